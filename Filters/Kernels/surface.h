@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The working surface: oriented manifold triangles with compact adjacency, scaled to a unit box.
+ *
+ * Half-edge h = 3 f + i runs from corner i to corner (i + 1) % 3 of face f. Its twin is the
+ * half-edge of the neighbouring face over the same edge. Crease edges are seams: the surface is cut
+ * open along them (points on both sides are distinct, coincident "sector" points), so that no
+ * field, ball or p-cell reaches across, but the half-edge on the other side is still known. */
+#ifndef AQR_SURFACE_H
+#define AQR_SURFACE_H
+
+#include "context.h"
+#include "vector.h"
+
+#define AQR_SEAM 0x80000000u /* set in `twin` where the edge is a seam */
+
+typedef struct aqr_surface
+{
+  size_t n_points, n_faces;
+  size_t n_clean;    /* cleaned points before sectors were split off (and before nothing else) */
+  double* points;    /* 3 * n_points; bounding box diagonal 1, centred at 0 */
+  aqr_index* corner; /* 3 * n_faces: point at the start of each half-edge */
+  aqr_index* twin;   /* 3 * n_faces: AQR_NONE at a boundary, AQR_SEAM | h over a seam, else h */
+  aqr_index*
+    fan; /* n_points: an outgoing half-edge, the clockwise-most where the point has a border or
+            seam, so that following aqr_next_around() from it meets every face around the point */
+  aqr_index* clean; /* n_points: the cleaned point it is a sector of, < n_clean; several sectors may
+                       share one */
+  aqr_origin* origin; /* n_clean: where the cleaned point lies on the input */
+  aqr_index* source;  /* n_faces: input triangle */
+  vec3 centre;        /* input = centre + diagonal * point */
+  double diagonal;
+} aqr_surface;
+
+static inline aqr_index aqr_face_of(aqr_index h)
+{
+  return h / 3;
+}
+static inline aqr_index aqr_next(aqr_index h)
+{
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+static inline aqr_index aqr_prev(aqr_index h)
+{
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
+/* The half-edge on the other side, across which fields are continuous; AQR_NONE at boundaries and
+ * seams. */
+static inline aqr_index aqr_twin(const aqr_surface* s, aqr_index h)
+{
+  aqr_index t = s->twin[h];
+  return t & AQR_SEAM ? AQR_NONE : t; /* AQR_NONE has the bit too */
+}
+/* As aqr_twin, but over seams as well; AQR_NONE at boundaries only. */
+static inline aqr_index aqr_any_twin(const aqr_surface* s, aqr_index h)
+{
+  aqr_index t = s->twin[h];
+  return t == AQR_NONE ? t : t & ~AQR_SEAM;
+}
+static inline bool aqr_is_boundary(const aqr_surface* s, aqr_index h)
+{
+  return s->twin[h] == AQR_NONE;
+}
+static inline bool aqr_is_seam(const aqr_surface* s, aqr_index h)
+{
+  return s->twin[h] != AQR_NONE && (s->twin[h] & AQR_SEAM);
+}
+static inline aqr_index aqr_from(const aqr_surface* s, aqr_index h)
+{
+  return s->corner[h];
+}
+static inline aqr_index aqr_to(const aqr_surface* s, aqr_index h)
+{
+  return s->corner[aqr_next(h)];
+}
+/* The next outgoing half-edge counter-clockwise around the start of h; AQR_NONE past a border or
+ * seam. */
+static inline aqr_index aqr_next_around(const aqr_surface* s, aqr_index h)
+{
+  return aqr_twin(s, aqr_prev(h));
+}
+static inline vec3 aqr_point(const aqr_surface* s, aqr_index v)
+{
+  return v3_load(s->points + 3 * (size_t)v);
+}
+/* Twice the area times the unit normal. */
+static inline vec3 aqr_face_cross(const aqr_surface* s, aqr_index f)
+{
+  vec3 a = aqr_point(s, s->corner[3 * f]), b = aqr_point(s, s->corner[3 * f + 1]),
+       c = aqr_point(s, s->corner[3 * f + 2]);
+  return v3_cross(v3_sub(b, a), v3_sub(c, a));
+}
+
+/* Cleans the input (see the counts in aqr_report): joins exactly coincident points, drops
+ * degenerate and duplicate triangles, orients, cuts non-manifold edges and points apart, halves
+ * edges longer than longest_edge (a fraction of the diagonal). No seams yet. */
+aqr_status aqr_surface_build(aqr_context* c,
+  const aqr_input* input,
+  double longest_edge,
+  aqr_surface* s,
+  aqr_report* report);
+
+/* Cuts the surface open along the half-edges marked in is_crease (3 * n_faces, both sides marked):
+ * twins become seams and points are split into sectors. */
+aqr_status aqr_surface_cut(aqr_context* c, aqr_surface* s, const uint8_t* is_crease);
+
+void aqr_surface_free(aqr_context* c, aqr_surface* s);
+
+/* Deep copy, so that a change of feature options need not clean the input again. */
+aqr_status aqr_surface_copy(aqr_context* c, const aqr_surface* from, aqr_surface* to);
+
+#endif
