@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "lines.h"
+
+#include <string.h>
+
+aqr_status aqr_lines_init(aqr_context* c, const aqr_surface* s, aqr_lines* l)
+{
+  memset(l, 0, sizeof *l);
+  l->head = AQR_NEW(c, aqr_index, s->n_faces);
+  if (!l->head)
+    return AQR_OUT_OF_MEMORY;
+  l->n_faces = s->n_faces;
+  for (size_t f = 0; f < s->n_faces; f++)
+    l->head[f] = AQR_NONE;
+  return AQR_OK;
+}
+
+void aqr_lines_free(aqr_context* c, aqr_lines* l)
+{
+  AQR_DROP(c, l->lines, l->line_capacity);
+  AQR_DROP(c, l->samples, l->sample_capacity);
+  AQR_DROP(c, l->segments, l->segment_capacity);
+  AQR_DROP(c, l->head, l->n_faces);
+  memset(l, 0, sizeof *l);
+}
+
+static void enter(aqr_lines* l, aqr_index face, aqr_index sample, aqr_index line)
+{
+  l->segments[l->n_segments] = (aqr_segment){ sample, line, l->head[face] };
+  l->head[face] = (aqr_index)l->n_segments++;
+}
+
+aqr_status aqr_lines_add(aqr_context* c,
+  aqr_lines* l,
+  const aqr_surface* s,
+  const aqr_line* line,
+  const aqr_sample* samples)
+{
+  size_t n = line->count;
+  if (l->n_samples + n >= AQR_NONE / 2)
+    return AQR_TOO_LARGE;
+  if (!AQR_RESERVE(c, l->lines, l->line_capacity, l->n_lines + 1) ||
+      !AQR_RESERVE(c, l->samples, l->sample_capacity, l->n_samples + n) ||
+      !AQR_RESERVE(c, l->segments, l->segment_capacity, l->n_segments + 2 * n))
+    return AQR_OUT_OF_MEMORY;
+  aqr_index id = (aqr_index)l->n_lines++;
+  l->lines[id] = *line;
+  l->lines[id].first = l->n_samples;
+  memcpy(l->samples + l->n_samples, samples, n * sizeof *samples);
+  for (size_t i = 0; i + 1 < n; i++)
+  {
+    aqr_index k = (aqr_index)(l->n_samples + i);
+    enter(l, samples[i].face, k, id);
+    aqr_index other = line->is_chain ? aqr_any_twin(s, samples[i].edge) : AQR_NONE;
+    if (other != AQR_NONE)
+      enter(l, aqr_face_of(other), k, id);
+  }
+  l->n_samples += n;
+  return AQR_OK;
+}

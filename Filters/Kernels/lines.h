@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Lines on the surface, and the lists of their segments per face (paper 3.2).
+ *
+ * A curvature line is a sequence of samples, each the crossing of one edge of the surface; between
+ * two samples it is one straight chord inside one face. Whether two chords of a face cross is then
+ * decided by the cyclic order of their ends along its border, and by nothing else. A chain
+ * (boundary or feature line) runs along edges: its samples are the starts of its half-edges. */
+#ifndef AQR_LINES_H
+#define AQR_LINES_H
+
+#include "surface.h"
+
+typedef struct aqr_sample
+{
+  vec3 p;
+  double t; /* position along `edge`, inside (0, 1); 0 on chains */
+  aqr_index
+    edge; /* the edge crossed: the smaller of its two half-edges; on chains the half-edge itself */
+  aqr_index
+    face; /* of the chord from this sample to the next; of the previous chord for the last sample */
+  float sigma; /* spacings of crossing lines passed since the first sample */
+  uint8_t isotropic;
+} aqr_sample;
+
+typedef struct aqr_line
+{
+  size_t first,
+    count; /* into aqr_lines.samples; a closed line repeats its first crossing as its last sample */
+  uint8_t type;    /* aqr_line_type */
+  uint8_t ends[2]; /* aqr_line_end */
+  bool closed;
+  bool is_chain;
+  aqr_index
+    partner[2]; /* sample on the other side of the seam that the end continues, or AQR_NONE */
+} aqr_line;
+
+typedef struct aqr_segment
+{
+  aqr_index sample, line, next;
+} aqr_segment;
+
+typedef struct aqr_lines
+{
+  aqr_line* lines;
+  size_t n_lines, line_capacity;
+  aqr_sample* samples;
+  size_t n_samples, sample_capacity;
+  aqr_segment* segments;
+  size_t n_segments, segment_capacity;
+  aqr_index* head; /* per face: its newest segment, or AQR_NONE */
+  size_t n_faces;
+} aqr_lines;
+
+aqr_status aqr_lines_init(aqr_context* c, const aqr_surface* s, aqr_lines* l);
+void aqr_lines_free(aqr_context* c, aqr_lines* l);
+
+/* Appends a line with copies of its samples and enters its segments into the faces' lists. */
+aqr_status aqr_lines_add(aqr_context* c,
+  aqr_lines* l,
+  const aqr_surface* s,
+  const aqr_line* line,
+  const aqr_sample* samples);
+
+/* The half-edge of face f that lies on the sample's edge. */
+static inline aqr_index aqr_sample_half_edge(const aqr_surface* s, const aqr_sample* a, aqr_index f)
+{
+  return aqr_face_of(a->edge) == f ? a->edge : aqr_any_twin(s, a->edge);
+}
+
+static inline vec3 aqr_edge_point(const aqr_surface* s, aqr_index h, double t)
+{
+  vec3 a = aqr_point(s, aqr_from(s, h)), b = aqr_point(s, aqr_to(s, h));
+  return v3_madd(a, t, v3_sub(b, a));
+}
+
+/* The name of an edge: the smaller of its half-edges. */
+static inline aqr_index aqr_edge_of(const aqr_surface* s, aqr_index h)
+{
+  aqr_index t = aqr_any_twin(s, h);
+  return t < h ? t : h;
+}
+
+#endif

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Proximity queries by p-cells (paper 3.2): the faces connected to a point's own that have a vertex
+ * within a radius of it, and the segments listed in them. Distances are measured inside the p-cell
+ * only, never through space to another sheet. */
+#ifndef AQR_PROXIMITY_H
+#define AQR_PROXIMITY_H
+
+#include "lines.h"
+
+typedef struct aqr_pcell
+{
+  const aqr_surface* surface;
+  uint32_t* stamp; /* per face: the query that took it in */
+  uint32_t query;
+  aqr_index* faces; /* of the cell, nearest the point's face first in edges crossed */
+  size_t n_faces, capacity;
+  vec3 p;
+  double radius;
+  size_t queries;
+} aqr_pcell;
+
+aqr_status aqr_pcell_init(aqr_context* c, const aqr_surface* s, aqr_pcell* cell);
+void aqr_pcell_free(aqr_context* c, aqr_pcell* cell);
+
+/* What a query looks for: segments nearer than the radius that run within a quarter right angle of
+ * a direction. */
+typedef struct aqr_near
+{
+  aqr_index line, sample; /* AQR_NONE: nothing found */
+  double distance;
+} aqr_near;
+
+/* The nearest segment of the family of `direction` (angle below pi/4; paper 4.2) within `radius` of
+ * p, which lies in `face`. The cell grows ring by ring and stops as soon as no nearer segment is
+ * possible. Segments of line `self` are passed over from sample `self_from` on. With any = true the
+ * first segment found within the radius ends the search. */
+aqr_status aqr_pcell_nearest(aqr_context* c,
+  aqr_pcell* cell,
+  const aqr_lines* lines,
+  aqr_index face,
+  vec3 p,
+  vec3 direction,
+  double radius,
+  bool any,
+  aqr_near* found);
+
+#endif

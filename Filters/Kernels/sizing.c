@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "sizing.h"
+
+#include <string.h>
+
+enum
+{
+  blur_sweeps = 4,
+  solve_steps = 40
+};
+
+static const double least_spacing = 1e-6;
+static const double least_tolerance = 1e-9, most_tolerance = 0.25;
+
+typedef struct job
+{
+  const aqr_surface* s;
+  const aqr_field* field;
+  const double* density;
+  const float* from;
+  double tolerance;
+  aqr_sizing* sizing;
+} job;
+
+static double spacing_of(double bend, double tolerance)
+{
+  double room = bend > 0 ? tolerance * (2 / bend - tolerance) : INFINITY;
+  return room > 0 ? 2 * sqrt(room)
+                  : 2 * tolerance; /* a bump smaller than the tolerance: its half circle */
+}
+
+static void measure(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    double c = v3_dot(v3_load(j->field->cross + 3 * v), v3_load(j->field->min_direction + 3 * v));
+    double c2 = fmin(1, c * c), a = fabs(j->field->k_min[v]), b = fabs(j->field->k_max[v]);
+    j->sizing->bend[2 * v] = (float)(a * c2 + b * (1 - c2));
+    j->sizing->bend[2 * v + 1] = (float)(a * (1 - c2) + b * c2);
+  }
+}
+
+/* One sweep of averaging with the neighbours, branch by branch, so that spacing does not jump along
+ * a line. */
+static void blur(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  const aqr_surface* s = j->s;
+  for (size_t v = begin; v < end; v++)
+  {
+    vec3 d = v3_load(j->field->cross + 3 * v);
+    double sum[2] = { j->from[2 * v], j->from[2 * v + 1] };
+    double n = 1;
+    aqr_index h = s->fan[v], first = h;
+    do
+    {
+      size_t w = aqr_to(s, h);
+      double e = fabs(v3_dot(d, v3_load(j->field->cross + 3 * w)));
+      unsigned swap = e * e < 0.5;
+      sum[0] += j->from[2 * w + swap];
+      sum[1] += j->from[2 * w + !swap];
+      n++;
+      h = aqr_next_around(s, h);
+    } while (h != AQR_NONE && h != first);
+    j->sizing->bend[2 * v] = (float)(sum[0] / n);
+    j->sizing->bend[2 * v + 1] = (float)(sum[1] / n);
+  }
+}
+
+static void ask(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    const aqr_origin* o = &j->s->origin[j->s->clean[v]];
+    double d = 0;
+    for (int i = 0; i < 3; i++)
+      d += (double)o->weight[i] * j->density[o->point[i]];
+    j->sizing->scale[v] = d > 0 ? (float)(1 / sqrt(d)) : 1;
+  }
+}
+
+static void space(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  aqr_sizing* z = j->sizing;
+  for (size_t i = 2 * begin; i < 2 * end; i++)
+  {
+    double d = fmin(spacing_of((double)z->bend[i], j->tolerance), z->largest);
+    z->spacing[i] = (float)fmax(least_spacing, d * (z->scale ? (double)z->scale[i / 2] : 1));
+  }
+}
+
+aqr_status aqr_sizing_set(aqr_context* c,
+  const aqr_surface* s,
+  double tolerance,
+  aqr_sizing* sizing)
+{
+  job j = { .s = s, .tolerance = tolerance, .sizing = sizing };
+  return aqr_parallel(c, s->n_points, space, &j, 0, 0);
+}
+
+double aqr_sizing_predict(const aqr_surface* s, const aqr_sizing* sizing)
+{
+  double points = 0;
+  for (aqr_index f = 0; f < s->n_faces; f++)
+  {
+    double density = 0;
+    for (unsigned i = 0; i < 3; i++)
+    {
+      const float* d = sizing->spacing + 2 * (size_t)s->corner[3 * f + i];
+      density += 1 / ((double)d[0] * (double)d[1]);
+    }
+    points += density / 3 * v3_norm(aqr_face_cross(s, f)) / 2;
+  }
+  return points;
+}
+
+aqr_status aqr_sizing_solve(aqr_context* c,
+  const aqr_surface* s,
+  double points,
+  aqr_sizing* sizing,
+  double* tolerance)
+{
+  double low = log(least_tolerance), high = log(most_tolerance);
+  for (int i = 0; i < solve_steps && high - low > 1e-4; i++)
+  {
+    double middle = (low + high) / 2;
+    aqr_status status = aqr_sizing_set(c, s, exp(middle), sizing);
+    if (status != AQR_OK)
+      return status;
+    if (aqr_sizing_predict(s, sizing) > points)
+      low = middle;
+    else
+      high = middle;
+  }
+  *tolerance = exp((low + high) / 2);
+  return aqr_sizing_set(c, s, *tolerance, sizing);
+}
+
+void aqr_sizing_at(const aqr_surface* s,
+  const aqr_field* field,
+  const aqr_sizing* sizing,
+  aqr_index face,
+  vec3 d,
+  double* along,
+  double* across)
+{
+  double a[2] = { 0, 0 };
+  for (unsigned i = 0; i < 3; i++)
+  {
+    size_t v = s->corner[3 * face + i];
+    double e = fabs(v3_dot(d, v3_load(field->cross + 3 * v)));
+    unsigned swap = e * e < 0.5;
+    a[0] += (double)sizing->spacing[2 * v + swap];
+    a[1] += (double)sizing->spacing[2 * v + !swap];
+  }
+  *along = a[0] / 3;
+  *across = a[1] / 3;
+}
+
+aqr_status aqr_sizing_build(aqr_context* c,
+  const aqr_surface* s,
+  const aqr_field* field,
+  const double* density,
+  double largest_spacing,
+  aqr_sizing* sizing)
+{
+  memset(sizing, 0, sizeof *sizing);
+  sizing->n_points = s->n_points;
+  sizing->largest = largest_spacing;
+  aqr_status status = AQR_OK;
+  float* from = AQR_NEW(c, float, 2 * s->n_points);
+  sizing->bend = AQR_NEW(c, float, 2 * s->n_points);
+  sizing->spacing = AQR_NEW(c, float, 2 * s->n_points);
+  AQR_REQUIRE(from && sizing->bend && sizing->spacing, AQR_OUT_OF_MEMORY);
+  job j = { .s = s, .field = field, .density = density, .from = from, .sizing = sizing };
+  if (density)
+  {
+    sizing->scale = AQR_NEW(c, float, s->n_points);
+    AQR_REQUIRE(sizing->scale, AQR_OUT_OF_MEMORY);
+    AQR_TRY(aqr_parallel(c, s->n_points, ask, &j, 0, 0));
+  }
+  AQR_TRY(aqr_parallel(c, s->n_points, measure, &j, 0, 0.2));
+  for (int i = 0; i < blur_sweeps; i++)
+  {
+    memcpy(from, sizing->bend, 2 * s->n_points * sizeof *from);
+    AQR_TRY(aqr_parallel(c, s->n_points, blur, &j, 0.2, 1));
+  }
+done:
+  AQR_DROP(c, from, 2 * s->n_points);
+  if (status != AQR_OK)
+    aqr_sizing_free(c, sizing);
+  return status;
+}
+
+void aqr_sizing_free(aqr_context* c, aqr_sizing* sizing)
+{
+  AQR_DROP(c, sizing->bend, 2 * sizing->n_points);
+  AQR_DROP(c, sizing->spacing, 2 * sizing->n_points);
+  AQR_DROP(c, sizing->scale, sizing->n_points);
+  memset(sizing, 0, sizeof *sizing);
+}

@@ -1,0 +1,467 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Paper 3.1 (local parameterization, unfolding, polar map) and 4.2 (trusted directions). */
+#include "tracer.h"
+
+#include <string.h>
+
+enum
+{
+  most_faces = 100000 /* crossed by one straight move; a bound for broken geometry only */
+};
+
+static const double vertex_band =
+  1e-9; /* of an edge: nearer to its end counts as passing through the vertex */
+static const double sample_band = 1e-7; /* samples stay this far inside their edge */
+static const double turn_error = 0.02;  /* radians a step may be off by its own estimate */
+
+static aqr_complex cx(double x, double y)
+{
+  return (aqr_complex){ x, y };
+}
+static aqr_complex cx_mul(aqr_complex a, aqr_complex b)
+{
+  return cx(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+}
+static aqr_complex cx_conj(aqr_complex a)
+{
+  return cx(a.x, -a.y);
+}
+static aqr_complex cx_sub(aqr_complex a, aqr_complex b)
+{
+  return cx(a.x - b.x, a.y - b.y);
+}
+static aqr_complex cx_madd(aqr_complex a, double s, aqr_complex b)
+{
+  return cx(a.x + s * b.x, a.y + s * b.y);
+}
+static double cx_cross(aqr_complex a, aqr_complex b)
+{
+  return a.x * b.y - a.y * b.x;
+}
+static double cx_dot(aqr_complex a, aqr_complex b)
+{
+  return a.x * b.x + a.y * b.y;
+}
+static aqr_complex cx_unit(aqr_complex a)
+{
+  double n = hypot(a.x, a.y);
+  return n > 0 ? cx(a.x / n, a.y / n) : cx(1, 0);
+}
+static aqr_complex cx_fourth(aqr_complex a)
+{
+  aqr_complex b = cx_mul(a, a);
+  return cx_mul(b, b);
+}
+
+/* The corner's cross as a unit complex number in a plane where the edges leaving the corner lie
+ * along to_next and to_prev: measured from the edge nearer to the tangent plane (paper 2). */
+static aqr_complex flatten(vec3 n,
+  vec3 direction,
+  vec3 next,
+  vec3 prev,
+  aqr_complex to_next,
+  aqr_complex to_prev)
+{
+  double a = v3_dot(next, n), b = v3_dot(prev, n);
+  bool use_next = a * a * v3_norm2(prev) <= b * b * v3_norm2(next);
+  vec3 p = v3_reject(use_next ? next : prev, n);
+  aqr_complex xi = cx_unit(cx(v3_dot(p, direction), v3_dot(n, v3_cross(p, direction))));
+  return cx_mul(cx_unit(use_next ? to_next : to_prev), xi);
+}
+
+/* Lays face f so that its corner `k` comes to `at` and its canonical +x axis to the unit number
+ * `turn`. */
+static void lay(const aqr_tracer* t,
+  aqr_index f,
+  unsigned k,
+  aqr_complex at,
+  aqr_complex turn,
+  aqr_chart* chart)
+{
+  const aqr_surface* s = t->surface;
+  vec3 p[3], e[3];
+  for (unsigned i = 0; i < 3; i++)
+    p[i] = aqr_point(s, s->corner[3 * f + i]);
+  for (unsigned i = 0; i < 3; i++)
+    e[i] = v3_sub(p[(i + 1) % 3], p[i]);
+  vec3 ex = v3_unit(e[0]);
+  vec3 up = v3_unit(v3_cross(e[0], v3_scale(e[2], -1)));
+  vec3 ey = v3_cross(up, ex);
+  aqr_complex canonical[3] = {
+    cx(0, 0), cx(v3_norm(e[0]), 0), cx(-v3_dot(e[2], ex), -v3_dot(e[2], ey))
+  };
+  chart->face = f;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    aqr_complex d = cx_mul(turn, cx_sub(canonical[i], canonical[k]));
+    chart->q[i] = cx(at.x + d.x, at.y + d.y);
+  }
+  chart->ex = v3_madd(v3_scale(ex, turn.x), -turn.y, ey);
+  chart->ey = v3_madd(v3_scale(ex, turn.y), turn.x, ey);
+  chart->coherent = false;
+  if (!t->cross)
+    return;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    size_t v = s->corner[3 * f + i];
+    unsigned j = (i + 1) % 3, h = (i + 2) % 3;
+    chart->cross[i] = cx_fourth(flatten(v3_load(t->normal + 3 * v),
+      v3_load(t->cross + 3 * v),
+      e[i],
+      v3_scale(e[h], -1),
+      cx_sub(chart->q[j], chart->q[i]),
+      cx_sub(chart->q[h], chart->q[i])));
+  }
+  chart->coherent = cx_dot(chart->cross[0], chart->cross[1]) > 0 &&
+                    cx_dot(chart->cross[1], chart->cross[2]) > 0 &&
+                    cx_dot(chart->cross[2], chart->cross[0]) > 0;
+}
+
+void aqr_chart_lay(const aqr_tracer* t, aqr_index f, aqr_chart* chart)
+{
+  lay(t, f, 0, cx(0, 0), cx(1, 0), chart);
+}
+
+/* The direction of half-edge i of face f in the face's canonical plane. */
+static aqr_complex canonical_edge(const aqr_surface* s, aqr_index f, unsigned i)
+{
+  vec3 a = aqr_point(s, s->corner[3 * f]), b = aqr_point(s, s->corner[3 * f + 1]),
+       c = aqr_point(s, s->corner[3 * f + 2]);
+  vec3 e0 = v3_sub(b, a), ex = v3_unit(e0);
+  vec3 ey = v3_cross(v3_unit(v3_cross(e0, v3_sub(c, a))), ex);
+  vec3 e = i == 0 ? e0 : i == 1 ? v3_sub(c, b) : v3_sub(a, c);
+  return cx_unit(cx(v3_dot(e, ex), v3_dot(e, ey)));
+}
+
+void aqr_chart_unfold(const aqr_tracer* t, const aqr_chart* from, unsigned k, aqr_chart* to)
+{
+  aqr_index twin = aqr_any_twin(t->surface, 3 * from->face + k);
+  aqr_complex a = from->q[k], b = from->q[(k + 1) % 3];
+  aqr_complex along = cx_unit(cx_sub(a, b)); /* the twin runs the other way */
+  aqr_complex turn =
+    cx_mul(along, cx_conj(canonical_edge(t->surface, aqr_face_of(twin), twin % 3)));
+  lay(t, aqr_face_of(twin), twin % 3, b, turn, to);
+}
+
+void aqr_tracer_init(aqr_tracer* t, const aqr_surface* s, const aqr_field* field)
+{
+  memset(t, 0, sizeof *t);
+  t->surface = s;
+  t->normal = field ? field->normal : NULL;
+  t->cross = field ? field->cross : NULL;
+}
+
+void aqr_tracer_free(aqr_context* c, aqr_tracer* t)
+{
+  AQR_DROP(c, t->samples, t->capacity);
+  t->capacity = t->n_samples = 0;
+}
+
+void aqr_tracer_start(aqr_tracer* t, const aqr_place* at, vec3 direction)
+{
+  aqr_chart_lay(t, at->face, &t->chart);
+  t->x = cx(0, 0);
+  for (unsigned i = 0; i < 3; i++)
+    t->x = cx_madd(t->x, at->bary[i], t->chart.q[i]);
+  t->d = cx_unit(cx(v3_dot(direction, t->chart.ex), v3_dot(direction, t->chart.ey)));
+  t->isotropic = false;
+  t->n_samples = 0;
+}
+
+vec3 aqr_tracer_direction(const aqr_tracer* t)
+{
+  return v3_madd(v3_scale(t->chart.ex, t->d.x), t->d.y, t->chart.ey);
+}
+
+vec3 aqr_tracer_position(const aqr_tracer* t)
+{
+  aqr_complex r = cx_sub(t->x, t->chart.q[0]);
+  vec3 p = aqr_point(t->surface, t->surface->corner[3 * t->chart.face]);
+  return v3_madd(v3_madd(p, r.x, t->chart.ex), r.y, t->chart.ey);
+}
+
+/* The cross's branch nearest to d at x: the linear blend of the corners' values (paper 2). */
+static aqr_complex nearest_branch(const aqr_chart* chart, aqr_complex x, aqr_complex d)
+{
+  double w[3], sum = 0;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    aqr_complex a = chart->q[(i + 1) % 3], b = chart->q[(i + 2) % 3];
+    w[i] = fmax(0, cx_cross(cx_sub(b, a), cx_sub(x, a)));
+    sum += w[i];
+  }
+  aqr_complex u = cx(0, 0);
+  for (unsigned i = 0; i < 3; i++)
+    u = cx_madd(u, sum > 0 ? w[i] : 1, chart->cross[i]);
+  aqr_complex off = cx_mul(u, cx_conj(cx_fourth(d)));
+  double angle = atan2(off.y, off.x) / 4;
+  return cx_mul(d, cx(cos(angle), sin(angle)));
+}
+
+bool aqr_tracer_align(aqr_tracer* t)
+{
+  t->isotropic = !t->chart.coherent;
+  if (t->chart.coherent)
+    t->d = nearest_branch(&t->chart, t->x, t->d);
+  return t->chart.coherent;
+}
+
+/* The total angle around an interior vertex from half-edge `from`, and the angle at which each
+ * half-edge leaves. */
+static double corner_angle(const aqr_surface* s, aqr_index h)
+{
+  vec3 o = aqr_point(s, aqr_from(s, h));
+  vec3 a = v3_sub(aqr_point(s, aqr_to(s, h)), o),
+       b = v3_sub(aqr_point(s, aqr_from(s, aqr_prev(h))), o);
+  return atan2(v3_norm(v3_cross(a, b)), v3_dot(a, b));
+}
+
+bool aqr_polar_exit(const aqr_surface* s,
+  aqr_index arrival,
+  double angle,
+  aqr_index* exit,
+  double* exit_angle)
+{
+  double total = 0;
+  aqr_index h = arrival;
+  do
+  {
+    total += corner_angle(s, h);
+    h = aqr_next_around(s, h);
+    if (h == AQR_NONE)
+      return false;
+  } while (h != arrival);
+  double way =
+    fmod(angle + total / 2, total); /* half of the full turn, in the vertex's own angles */
+  for (;;)
+  {
+    double a = corner_angle(s, h);
+    aqr_index next = aqr_next_around(s, h);
+    if (way < a || next == arrival)
+    {
+      *exit = h;
+      *exit_angle = fmin(way, a);
+      return true;
+    }
+    way -= a;
+    h = next;
+  }
+}
+
+/* Leaves a sample where the point passes over half-edge h of the face it leaves. A crossing of the
+ * edge that the newest sample lies on takes that sample back: the line only touched the face in
+ * between. */
+static aqr_status record(aqr_context* c, aqr_tracer* t, aqr_index h, double at, aqr_index into)
+{
+  const aqr_surface* s = t->surface;
+  aqr_index edge = aqr_edge_of(s, h);
+  if (t->n_samples && t->samples[t->n_samples - 1].edge == edge)
+  {
+    t->n_samples--;
+    return AQR_OK;
+  }
+  if (!AQR_RESERVE(c, t->samples, t->capacity, t->n_samples + 1))
+    return AQR_OUT_OF_MEMORY;
+  at = fmin(fmax(at, sample_band), 1 - sample_band);
+  if (edge != h)
+    at = 1 - at;
+  t->samples[t->n_samples++] = (aqr_sample){
+    .p = aqr_edge_point(s, edge, at), .t = at, .edge = edge, .face = into, .isotropic = t->isotropic
+  };
+  return AQR_OK;
+}
+
+/* Passes exactly through corner k of the chart's face (paper 3.1, case 3): the samples go around
+ * the vertex on the shorter side, and the new face is turned so that the direction keeps its
+ * coordinates. */
+static aqr_status pass_vertex(aqr_context* c,
+  aqr_tracer* t,
+  unsigned k,
+  aqr_complex d,
+  bool recording,
+  aqr_advance* result)
+{
+  const aqr_surface* s = t->surface;
+  aqr_index arrival = 3 * t->chart.face + k, exit;
+  aqr_complex at = t->chart.q[k], e = cx_sub(t->chart.q[(k + 1) % 3], at), back = cx(-d.x, -d.y);
+  double exit_angle, angle = fmax(0, atan2(cx_cross(e, back), cx_dot(e, back)));
+  if (!aqr_polar_exit(s, arrival, angle, &exit, &exit_angle))
+  {
+    *result = AQR_AT_BORDER;
+    return AQR_OK;
+  }
+  unsigned ccw = 0, valence = 0;
+  aqr_index h = arrival;
+  do
+  {
+    if (h == exit)
+      ccw = valence;
+    valence++;
+    h = aqr_next_around(s, h);
+  } while (h != arrival);
+  aqr_status status = AQR_OK;
+  bool left = 2 * ccw <= valence;
+  for (unsigned i = left ? ccw : valence - ccw; recording && i > 0 && status == AQR_OK; i--)
+  {
+    /* leave the face of h over its edge at the vertex: the previous half-edge to the left, h itself
+     * to the right */
+    aqr_index over = left ? aqr_prev(h) : h;
+    aqr_index into = aqr_twin(s, over);
+    status = record(c, t, over, left ? 1 : 0, aqr_face_of(into));
+    h = left ? into : aqr_next(into);
+  }
+  aqr_complex out =
+    cx_mul(canonical_edge(s, aqr_face_of(exit), exit % 3), cx(cos(exit_angle), sin(exit_angle)));
+  lay(t, aqr_face_of(exit), exit % 3, at, cx_mul(d, cx_conj(out)), &t->chart);
+  t->x = at;
+  *result = AQR_INSIDE;
+  return status;
+}
+
+/* The edge through which a ray from x along d leaves the chart's triangle: its start lies to the
+ * right of the ray, its end to the left. A point on the border of the triangle may see its own
+ * edge; `entry` (3 for none) is not considered unless the ray points back out of it. */
+static unsigned exit_edge(const aqr_chart* chart, aqr_complex x, aqr_complex d, double side[3])
+{
+  for (unsigned i = 0; i < 3; i++)
+    side[i] = cx_cross(d, cx_sub(chart->q[i], x));
+  unsigned best = 3;
+  double ahead = 0;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    unsigned j = (i + 1) % 3;
+    if (side[i] <= 0 && side[j] >= 0 && side[j] > side[i])
+    {
+      double at = side[i] / (side[i] - side[j]);
+      aqr_complex p = cx_madd(chart->q[i], at, cx_sub(chart->q[j], chart->q[i]));
+      double reach = cx_dot(d, cx_sub(p, x));
+      if (best == 3 || reach > ahead)
+      {
+        best = i;
+        ahead = reach;
+      }
+    }
+  }
+  return best;
+}
+
+/* Moves the point straight along d. The chart, and with it the meaning of d, stays unfolded into
+ * one plane. */
+static aqr_status move(aqr_context* c,
+  aqr_tracer* t,
+  aqr_complex d,
+  double length,
+  bool recording,
+  aqr_advance* result)
+{
+  const aqr_surface* s = t->surface;
+  *result = AQR_INSIDE;
+  for (int i = 0; i < most_faces; i++)
+  {
+    double side[3];
+    unsigned k = exit_edge(&t->chart, t->x, d, side);
+    if (k == 3) /* a flat triangle, or a point off its triangle by rounding: stay */
+    {
+      t->x = cx_madd(t->x, length, d);
+      return AQR_OK;
+    }
+    unsigned j = (k + 1) % 3;
+    double at = side[k] / (side[k] - side[j]);
+    aqr_complex exit = cx_madd(t->chart.q[k], at, cx_sub(t->chart.q[j], t->chart.q[k]));
+    double reach = fmax(0, cx_dot(d, cx_sub(exit, t->x)));
+    if (reach >= length)
+    {
+      t->x = cx_madd(t->x, length, d);
+      return AQR_OK;
+    }
+    length -= reach;
+    aqr_index h = 3 * t->chart.face + k;
+    t->x = exit;
+    if (at < vertex_band || at > 1 - vertex_band)
+    {
+      aqr_status status = pass_vertex(c, t, at < vertex_band ? k : j, d, recording, result);
+      if (status != AQR_OK)
+        return status;
+      if (*result == AQR_INSIDE)
+        continue;
+    }
+    aqr_index twin = aqr_twin(s, h);
+    if (recording)
+    {
+      aqr_status status = record(c, t, h, at, twin == AQR_NONE ? t->chart.face : aqr_face_of(twin));
+      if (status != AQR_OK)
+        return status;
+    }
+    if (twin == AQR_NONE)
+    {
+      *result = AQR_AT_BORDER;
+      return AQR_OK;
+    }
+    aqr_chart next;
+    aqr_chart_unfold(t, &t->chart, k, &next);
+    t->chart = next;
+    *result = AQR_INSIDE;
+  }
+  return AQR_OK;
+}
+
+aqr_status aqr_tracer_straight(aqr_context* c, aqr_tracer* t, double length, aqr_advance* result)
+{
+  return move(c, t, t->d, length, true, result);
+}
+
+/* The field's direction at x + length * d, nearest to d; d itself where the field gives none. The
+ * context is restored. */
+static aqr_status predict(aqr_context* c,
+  aqr_tracer* t,
+  aqr_complex d,
+  double length,
+  aqr_complex* direction)
+{
+  aqr_chart chart = t->chart;
+  aqr_complex x = t->x;
+  aqr_advance result;
+  aqr_status status = move(c, t, d, length, false, &result);
+  *direction = t->chart.coherent ? nearest_branch(&t->chart, t->x, d) : d;
+  t->chart = chart;
+  t->x = x;
+  return status;
+}
+
+aqr_status aqr_tracer_step(aqr_context* c,
+  aqr_tracer* t,
+  double* step,
+  double shortest,
+  double longest,
+  aqr_advance* result)
+{
+  double h = fmin(fmax(*step, shortest), longest);
+  aqr_status status = AQR_OK;
+  if (!aqr_tracer_align(t))
+  {
+    *step = h;
+    return move(c, t, t->d, fmin(h, 2 * shortest), true, result);
+  }
+  aqr_complex k1 = t->d, k2, k3, k4, mean;
+  for (;;)
+  {
+    AQR_TRY(predict(c, t, k1, h / 2, &k2));
+    AQR_TRY(predict(c, t, k2, h / 2, &k3));
+    AQR_TRY(predict(c, t, k3, h, &k4));
+    mean = cx_unit(cx(k1.x + 2 * k2.x + 2 * k3.x + k4.x, k1.y + 2 * k2.y + 2 * k3.y + k4.y));
+    double error = fabs(cx_cross(mean, k2)) + fabs(cx_cross(k2, k3));
+    if (error <= turn_error || h <= shortest)
+    {
+      *step = error < turn_error / 4 ? fmin(2 * h, longest) : h;
+      break;
+    }
+    h = fmax(h / 2, shortest);
+  }
+  t->d = mean;
+  AQR_TRY(move(c, t, mean, h, true, result));
+  /* arrive with the direction the field has there, so that stops and branches are judged by it */
+  if (t->chart.coherent)
+    t->d = nearest_branch(&t->chart, t->x, k4);
+done:
+  return status;
+}
