@@ -24,6 +24,33 @@ void aqr_lines_free(aqr_context* c, aqr_lines* l)
   memset(l, 0, sizeof *l);
 }
 
+bool aqr_border_before(const aqr_surface* s, aqr_index f, const aqr_sample* a, const aqr_sample* b)
+{
+  aqr_index ha = aqr_sample_half_edge(s, a, f), hb = aqr_sample_half_edge(s, b, f);
+  if (ha != hb)
+    return ha < hb;
+  bool before = a->t < b->t || (a->t == b->t && a->key < b->key);
+  bool same = a->t == b->t && a->key == b->key;
+  return !same && (ha == a->edge ? before : !before);
+}
+
+int aqr_chords_cross(const aqr_surface* s,
+  aqr_index f,
+  const aqr_sample* a0,
+  const aqr_sample* a1,
+  const aqr_sample* b0,
+  const aqr_sample* b1)
+{
+  bool turn = aqr_border_before(s, f, a1, a0); /* then the stretch from a1 to a0 does not wrap */
+  const aqr_sample *low = turn ? a1 : a0, *high = turn ? a0 : a1;
+  bool start = aqr_border_before(s, f, low, b0) && aqr_border_before(s, f, b0, high);
+  bool end = aqr_border_before(s, f, low, b1) && aqr_border_before(s, f, b1, high);
+  if (start == end)
+    return 0;
+  /* left of a is the stretch counter-clockwise from a1 to a0 */
+  return end == turn ? 1 : -1;
+}
+
 static void enter(aqr_lines* l, aqr_index face, aqr_index sample, aqr_index line)
 {
   l->segments[l->n_segments] = (aqr_segment){ sample, line, l->head[face] };
@@ -47,6 +74,10 @@ aqr_status aqr_lines_add(aqr_context* c,
   l->lines[id] = *line;
   l->lines[id].first = l->n_samples;
   memcpy(l->samples + l->n_samples, samples, n * sizeof *samples);
+  for (size_t i = 0; i < n; i++)
+    l->samples[l->n_samples + i].key = (aqr_index)(l->n_samples + i);
+  if (line->closed) /* the closing sample is the first one again */
+    l->samples[l->n_samples + n - 1].key = (aqr_index)l->n_samples;
   for (size_t i = 0; i + 1 < n; i++)
   {
     aqr_index k = (aqr_index)(l->n_samples + i);

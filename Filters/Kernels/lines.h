@@ -13,25 +13,23 @@
 typedef struct aqr_sample
 {
   vec3 p;
-  double t; /* position along `edge`, inside (0, 1); 0 on chains */
-  aqr_index
-    edge; /* the edge crossed: the smaller of its two half-edges; on chains the half-edge itself */
-  aqr_index
-    face; /* of the chord from this sample to the next; of the previous chord for the last sample */
-  float sigma; /* spacings of crossing lines passed since the first sample */
+  double t;       /* position along `edge`, inside (0, 1); 0 on chains */
+  aqr_index edge; /* the edge crossed: the smaller of its two half-edges; on chains the half-edge itself */
+  aqr_index face; /* of the chord from this sample to the next; of the previous chord for the last sample */
+  aqr_index key;  /* breaks ties of t along an edge; set by aqr_lines_add */
+  float arc;      /* length since the first sample */
+  float sigma;    /* spacings of crossing lines passed since the first sample */
   uint8_t isotropic;
 } aqr_sample;
 
 typedef struct aqr_line
 {
-  size_t first,
-    count; /* into aqr_lines.samples; a closed line repeats its first crossing as its last sample */
-  uint8_t type;    /* aqr_line_type */
-  uint8_t ends[2]; /* aqr_line_end */
+  size_t first, count; /* into aqr_lines.samples; a closed line repeats its first crossing as its last sample */
+  uint8_t type;        /* aqr_line_type */
+  uint8_t ends[2];     /* aqr_line_end */
   bool closed;
   bool is_chain;
-  aqr_index
-    partner[2]; /* sample on the other side of the seam that the end continues, or AQR_NONE */
+  aqr_index partner[2]; /* sample on the other side of the seam that the end continues, or AQR_NONE */
 } aqr_line;
 
 typedef struct aqr_segment
@@ -72,6 +70,19 @@ static inline vec3 aqr_edge_point(const aqr_surface* s, aqr_index h, double t)
   vec3 a = aqr_point(s, aqr_from(s, h)), b = aqr_point(s, aqr_to(s, h));
   return v3_madd(a, t, v3_sub(b, a));
 }
+
+/* Position of a chord's end along the border of face f, counter-clockwise; no two ends in a face
+ * are equal. */
+bool aqr_border_before(const aqr_surface* s, aqr_index f, const aqr_sample* a, const aqr_sample* b);
+
+/* Whether the chords a0-a1 and b0-b1 of face f cross, by the cyclic order of their ends: 0 no, 1
+ * when b runs from the right of a to its left, -1 the other way. */
+int aqr_chords_cross(const aqr_surface* s,
+  aqr_index f,
+  const aqr_sample* a0,
+  const aqr_sample* a1,
+  const aqr_sample* b0,
+  const aqr_sample* b1);
 
 /* The name of an edge: the smaller of its half-edges. */
 static inline aqr_index aqr_edge_of(const aqr_surface* s, aqr_index h)

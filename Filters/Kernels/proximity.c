@@ -45,8 +45,7 @@ static aqr_status begin(aqr_context* c, aqr_pcell* cell, aqr_index face, vec3 p,
   cell->p = p;
   cell->radius = radius;
   cell->queries++;
-  if (++cell->query ==
-      0) /* the counter came round: no stamp of an earlier turn may be taken for a new one */
+  if (++cell->query == 0) /* the counter came round: no stamp of an earlier turn may be taken for a new one */
   {
     memset(cell->stamp, 0, cell->surface->n_faces * sizeof *cell->stamp);
     cell->query = 1;
@@ -62,8 +61,7 @@ static aqr_status extend(aqr_context* c, aqr_pcell* cell, size_t i)
   aqr_index f = cell->faces[i];
   bool inside[3];
   for (unsigned k = 0; k < 3; k++)
-    inside[k] =
-      v3_norm2(v3_sub(aqr_point(s, s->corner[3 * f + k]), cell->p)) < cell->radius * cell->radius;
+    inside[k] = v3_norm2(v3_sub(aqr_point(s, s->corner[3 * f + k]), cell->p)) < cell->radius * cell->radius;
   for (unsigned k = 0; k < 3; k++)
   {
     aqr_index twin = aqr_twin(s, 3 * f + k);
@@ -71,8 +69,7 @@ static aqr_status extend(aqr_context* c, aqr_pcell* cell, size_t i)
       continue;
     bool reaches = inside[k] || inside[(k + 1) % 3];
     if (!reaches)
-      reaches = v3_norm2(v3_sub(aqr_point(s, aqr_from(s, aqr_prev(twin))), cell->p)) <
-                cell->radius * cell->radius;
+      reaches = v3_norm2(v3_sub(aqr_point(s, aqr_from(s, aqr_prev(twin))), cell->p)) < cell->radius * cell->radius;
     if (reaches && !take(c, cell, aqr_face_of(twin)))
       return AQR_OUT_OF_MEMORY;
   }
@@ -82,28 +79,27 @@ static aqr_status extend(aqr_context* c, aqr_pcell* cell, size_t i)
 aqr_status aqr_pcell_nearest(aqr_context* c,
   aqr_pcell* cell,
   const aqr_lines* lines,
-  aqr_index face,
-  vec3 p,
-  vec3 direction,
-  double radius,
-  bool any,
+  const aqr_probe* probe,
   aqr_near* found)
 {
-  *found = (aqr_near){ AQR_NONE, AQR_NONE, radius };
-  aqr_status status = begin(c, cell, face, p, radius);
+  *found = (aqr_near){ AQR_NONE, AQR_NONE, probe->radius };
+  aqr_status status = begin(c, cell, probe->face, probe->p, probe->radius);
   for (size_t i = 0; status == AQR_OK && i < cell->n_faces; i++)
   {
     for (aqr_index k = lines->head[cell->faces[i]]; k != AQR_NONE; k = lines->segments[k].next)
     {
-      aqr_index n = lines->segments[k].sample;
-      vec3 a = lines->samples[n].p, b = lines->samples[n + 1].p, d = v3_sub(b, a);
-      if (fabs(v3_dot(d, direction)) < family_cosine * v3_norm(d))
+      aqr_index n = lines->segments[k].sample, line = lines->segments[k].line;
+      const aqr_sample* a = &lines->samples[n];
+      vec3 d = v3_sub(a[1].p, a->p);
+      if (fabs(v3_dot(d, probe->direction)) < family_cosine * v3_norm(d))
         continue;
-      double distance = distance_to_segment(p, a, b);
+      if (line == probe->self && fabs((double)a->arc - probe->arc) < probe->gap)
+        continue;
+      double distance = distance_to_segment(probe->p, a->p, a[1].p);
       if (distance < found->distance)
-        *found = (aqr_near){ lines->segments[k].line, n, distance };
+        *found = (aqr_near){ line, n, distance };
     }
-    if (any && found->line != AQR_NONE)
+    if (probe->any && found->line != AQR_NONE)
       break;
     status = extend(c, cell, i);
   }

@@ -30,18 +30,21 @@ typedef struct aqr_near
   double distance;
 } aqr_near;
 
-/* The nearest segment of the family of `direction` (angle below pi/4; paper 4.2) within `radius` of
- * p, which lies in `face`. The cell grows ring by ring and stops as soon as no nearer segment is
- * possible. Segments of line `self` are passed over from sample `self_from` on. With any = true the
- * first segment found within the radius ends the search. */
+typedef struct aqr_probe
+{
+  aqr_index face; /* where p lies */
+  vec3 p, direction;
+  double radius;
+  bool any;        /* the first segment found inside the radius will do */
+  aqr_index self;  /* segments of this line are passed over ... */
+  double arc, gap; /* ... where their arc length is within `gap` of `arc` */
+} aqr_probe;
+
+/* The nearest segment of the direction's family (angle below pi/4; paper 4.2) within the radius. */
 aqr_status aqr_pcell_nearest(aqr_context* c,
   aqr_pcell* cell,
   const aqr_lines* lines,
-  aqr_index face,
-  vec3 p,
-  vec3 direction,
-  double radius,
-  bool any,
+  const aqr_probe* probe,
   aqr_near* found);
 
 #endif

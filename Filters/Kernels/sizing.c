@@ -25,8 +25,7 @@ typedef struct job
 static double spacing_of(double bend, double tolerance)
 {
   double room = bend > 0 ? tolerance * (2 / bend - tolerance) : INFINITY;
-  return room > 0 ? 2 * sqrt(room)
-                  : 2 * tolerance; /* a bump smaller than the tolerance: its half circle */
+  return room > 0 ? 2 * sqrt(room) : 2 * tolerance; /* a bump smaller than the tolerance: its half circle */
 }
 
 static void measure(void* data, size_t begin, size_t end)
@@ -92,10 +91,7 @@ static void space(void* data, size_t begin, size_t end)
   }
 }
 
-aqr_status aqr_sizing_set(aqr_context* c,
-  const aqr_surface* s,
-  double tolerance,
-  aqr_sizing* sizing)
+aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance, aqr_sizing* sizing)
 {
   job j = { .s = s, .tolerance = tolerance, .sizing = sizing };
   return aqr_parallel(c, s->n_points, space, &j, 0, 0);
@@ -117,11 +113,7 @@ double aqr_sizing_predict(const aqr_surface* s, const aqr_sizing* sizing)
   return points;
 }
 
-aqr_status aqr_sizing_solve(aqr_context* c,
-  const aqr_surface* s,
-  double points,
-  aqr_sizing* sizing,
-  double* tolerance)
+aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points, aqr_sizing* sizing, double* tolerance)
 {
   double low = log(least_tolerance), high = log(most_tolerance);
   for (int i = 0; i < solve_steps && high - low > 1e-4; i++)

@@ -8,10 +8,8 @@
 
 typedef struct aqr_sizing
 {
-  float*
-    bend; /* 2 per point: absolute normal curvature along the cross's first and second branch */
-  float*
-    scale; /* per point: factor on both spacings asked for by the user's density, or NULL for 1 */
+  float* bend;    /* 2 per point: absolute normal curvature along the cross's first and second branch */
+  float* scale;   /* per point: factor on both spacings asked for by the user's density, or NULL for 1 */
   float* spacing; /* 2 per point: distance of neighbouring crossing lines along the first and the
                      second branch */
   size_t n_points;
@@ -28,21 +26,14 @@ aqr_status aqr_sizing_build(aqr_context* c,
 void aqr_sizing_free(aqr_context* c, aqr_sizing* sizing);
 
 /* Fills `spacing` for a tolerance (in scaled units). */
-aqr_status aqr_sizing_set(aqr_context* c,
-  const aqr_surface* s,
-  double tolerance,
-  aqr_sizing* sizing);
+aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance, aqr_sizing* sizing);
 
 /* Number of crossings that lines at these spacings would have: the integral of 1 / (product of the
  * spacings). */
 double aqr_sizing_predict(const aqr_surface* s, const aqr_sizing* sizing);
 
 /* The tolerance whose prediction is `points`. */
-aqr_status aqr_sizing_solve(aqr_context* c,
-  const aqr_surface* s,
-  double points,
-  aqr_sizing* sizing,
-  double* tolerance);
+aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points, aqr_sizing* sizing, double* tolerance);
 
 /* Spacing of neighbouring lines along direction d at a face: *along, of the lines that cross one
  * that runs along d, and *across, of the lines beside it. */

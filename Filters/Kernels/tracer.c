@@ -9,8 +9,7 @@ enum
   most_faces = 100000 /* crossed by one straight move; a bound for broken geometry only */
 };
 
-static const double vertex_band =
-  1e-9; /* of an edge: nearer to its end counts as passing through the vertex */
+static const double vertex_band = 1e-9; /* of an edge: nearer to its end counts as passing through the vertex */
 static const double sample_band = 1e-7; /* samples stay this far inside their edge */
 static const double turn_error = 0.02;  /* radians a step may be off by its own estimate */
 
@@ -55,12 +54,7 @@ static aqr_complex cx_fourth(aqr_complex a)
 
 /* The corner's cross as a unit complex number in a plane where the edges leaving the corner lie
  * along to_next and to_prev: measured from the edge nearer to the tangent plane (paper 2). */
-static aqr_complex flatten(vec3 n,
-  vec3 direction,
-  vec3 next,
-  vec3 prev,
-  aqr_complex to_next,
-  aqr_complex to_prev)
+static aqr_complex flatten(vec3 n, vec3 direction, vec3 next, vec3 prev, aqr_complex to_next, aqr_complex to_prev)
 {
   double a = v3_dot(next, n), b = v3_dot(prev, n);
   bool use_next = a * a * v3_norm2(prev) <= b * b * v3_norm2(next);
@@ -71,12 +65,7 @@ static aqr_complex flatten(vec3 n,
 
 /* Lays face f so that its corner `k` comes to `at` and its canonical +x axis to the unit number
  * `turn`. */
-static void lay(const aqr_tracer* t,
-  aqr_index f,
-  unsigned k,
-  aqr_complex at,
-  aqr_complex turn,
-  aqr_chart* chart)
+static void lay(const aqr_tracer* t, aqr_index f, unsigned k, aqr_complex at, aqr_complex turn, aqr_chart* chart)
 {
   const aqr_surface* s = t->surface;
   vec3 p[3], e[3];
@@ -87,9 +76,7 @@ static void lay(const aqr_tracer* t,
   vec3 ex = v3_unit(e[0]);
   vec3 up = v3_unit(v3_cross(e[0], v3_scale(e[2], -1)));
   vec3 ey = v3_cross(up, ex);
-  aqr_complex canonical[3] = {
-    cx(0, 0), cx(v3_norm(e[0]), 0), cx(-v3_dot(e[2], ex), -v3_dot(e[2], ey))
-  };
+  aqr_complex canonical[3] = { cx(0, 0), cx(v3_norm(e[0]), 0), cx(-v3_dot(e[2], ex), -v3_dot(e[2], ey)) };
   chart->face = f;
   for (unsigned i = 0; i < 3; i++)
   {
@@ -112,8 +99,7 @@ static void lay(const aqr_tracer* t,
       cx_sub(chart->q[j], chart->q[i]),
       cx_sub(chart->q[h], chart->q[i])));
   }
-  chart->coherent = cx_dot(chart->cross[0], chart->cross[1]) > 0 &&
-                    cx_dot(chart->cross[1], chart->cross[2]) > 0 &&
+  chart->coherent = cx_dot(chart->cross[0], chart->cross[1]) > 0 && cx_dot(chart->cross[1], chart->cross[2]) > 0 &&
                     cx_dot(chart->cross[2], chart->cross[0]) > 0;
 }
 
@@ -138,8 +124,7 @@ void aqr_chart_unfold(const aqr_tracer* t, const aqr_chart* from, unsigned k, aq
   aqr_index twin = aqr_any_twin(t->surface, 3 * from->face + k);
   aqr_complex a = from->q[k], b = from->q[(k + 1) % 3];
   aqr_complex along = cx_unit(cx_sub(a, b)); /* the twin runs the other way */
-  aqr_complex turn =
-    cx_mul(along, cx_conj(canonical_edge(t->surface, aqr_face_of(twin), twin % 3)));
+  aqr_complex turn = cx_mul(along, cx_conj(canonical_edge(t->surface, aqr_face_of(twin), twin % 3)));
   lay(t, aqr_face_of(twin), twin % 3, b, turn, to);
 }
 
@@ -211,16 +196,11 @@ bool aqr_tracer_align(aqr_tracer* t)
 static double corner_angle(const aqr_surface* s, aqr_index h)
 {
   vec3 o = aqr_point(s, aqr_from(s, h));
-  vec3 a = v3_sub(aqr_point(s, aqr_to(s, h)), o),
-       b = v3_sub(aqr_point(s, aqr_from(s, aqr_prev(h))), o);
+  vec3 a = v3_sub(aqr_point(s, aqr_to(s, h)), o), b = v3_sub(aqr_point(s, aqr_from(s, aqr_prev(h))), o);
   return atan2(v3_norm(v3_cross(a, b)), v3_dot(a, b));
 }
 
-bool aqr_polar_exit(const aqr_surface* s,
-  aqr_index arrival,
-  double angle,
-  aqr_index* exit,
-  double* exit_angle)
+bool aqr_polar_exit(const aqr_surface* s, aqr_index arrival, double angle, aqr_index* exit, double* exit_angle)
 {
   double total = 0;
   aqr_index h = arrival;
@@ -231,8 +211,7 @@ bool aqr_polar_exit(const aqr_surface* s,
     if (h == AQR_NONE)
       return false;
   } while (h != arrival);
-  double way =
-    fmod(angle + total / 2, total); /* half of the full turn, in the vertex's own angles */
+  double way = fmod(angle + total / 2, total); /* half of the full turn, in the vertex's own angles */
   for (;;)
   {
     double a = corner_angle(s, h);
@@ -265,9 +244,8 @@ static aqr_status record(aqr_context* c, aqr_tracer* t, aqr_index h, double at, 
   at = fmin(fmax(at, sample_band), 1 - sample_band);
   if (edge != h)
     at = 1 - at;
-  t->samples[t->n_samples++] = (aqr_sample){
-    .p = aqr_edge_point(s, edge, at), .t = at, .edge = edge, .face = into, .isotropic = t->isotropic
-  };
+  t->samples[t->n_samples++] =
+    (aqr_sample){ .p = aqr_edge_point(s, edge, at), .t = at, .edge = edge, .face = into, .isotropic = t->isotropic };
   return AQR_OK;
 }
 
@@ -310,8 +288,7 @@ static aqr_status pass_vertex(aqr_context* c,
     status = record(c, t, over, left ? 1 : 0, aqr_face_of(into));
     h = left ? into : aqr_next(into);
   }
-  aqr_complex out =
-    cx_mul(canonical_edge(s, aqr_face_of(exit), exit % 3), cx(cos(exit_angle), sin(exit_angle)));
+  aqr_complex out = cx_mul(canonical_edge(s, aqr_face_of(exit), exit % 3), cx(cos(exit_angle), sin(exit_angle)));
   lay(t, aqr_face_of(exit), exit % 3, at, cx_mul(d, cx_conj(out)), &t->chart);
   t->x = at;
   *result = AQR_INSIDE;
@@ -347,12 +324,7 @@ static unsigned exit_edge(const aqr_chart* chart, aqr_complex x, aqr_complex d, 
 
 /* Moves the point straight along d. The chart, and with it the meaning of d, stays unfolded into
  * one plane. */
-static aqr_status move(aqr_context* c,
-  aqr_tracer* t,
-  aqr_complex d,
-  double length,
-  bool recording,
-  aqr_advance* result)
+static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double length, bool recording, aqr_advance* result)
 {
   const aqr_surface* s = t->surface;
   *result = AQR_INSIDE;
@@ -412,11 +384,7 @@ aqr_status aqr_tracer_straight(aqr_context* c, aqr_tracer* t, double length, aqr
 
 /* The field's direction at x + length * d, nearest to d; d itself where the field gives none. The
  * context is restored. */
-static aqr_status predict(aqr_context* c,
-  aqr_tracer* t,
-  aqr_complex d,
-  double length,
-  aqr_complex* direction)
+static aqr_status predict(aqr_context* c, aqr_tracer* t, aqr_complex d, double length, aqr_complex* direction)
 {
   aqr_chart chart = t->chart;
   aqr_complex x = t->x;

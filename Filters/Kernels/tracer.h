@@ -78,10 +78,6 @@ void aqr_chart_unfold(const aqr_tracer* t, const aqr_chart* from, unsigned k, aq
  * half-edge of the vertex and `angle` the angle counter-clockwise from it to the way back. Gives
  * the outgoing half-edge clockwise-next to the way out and the angle from it inside its face. False
  * at a border vertex, where there is no way out. */
-bool aqr_polar_exit(const aqr_surface* s,
-  aqr_index arrival,
-  double angle,
-  aqr_index* exit,
-  double* exit_angle);
+bool aqr_polar_exit(const aqr_surface* s, aqr_index arrival, double angle, aqr_index* exit, double* exit_angle);
 
 #endif

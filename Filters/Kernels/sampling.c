@@ -1,0 +1,587 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Paper 3 (line seeding) and 4.2. Lines are committed one by one; each committed line is a parent that is asked for
+ * seeds of lines that cross it: wherever two neighbouring crossings along it are more than one and a half spacings
+ * apart, evenly placed seeds fill the gap. When no parent has a gap left, places far from all lines get a seed of their
+ * own. */
+#include "sampling.h"
+
+#include "growth.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum
+{
+  most_rounds = 8,
+  most_seeds_per_line = 1 << 20,
+  score_levels = 64
+};
+
+static const double seed_distance = 0.6;  /* of the spacing: nearer than this to a line of its family no line begins */
+static const double cover_distance = 0.8; /* of the spacing: a place farther than this from all lines gets a seed */
+static const double least_length = 1.5;   /* spacings: a line shorter than this is not worth its two T-joints */
+static const double node_distance =
+  0.35; /* of the spacing: a line does not go on over a seam nearer to another's end */
+
+/* Where a line ends on a chain. */
+typedef struct landing
+{
+  double sigma;
+  aqr_index next;
+} landing;
+
+typedef struct sampler
+{
+  aqr_context* c;
+  const aqr_surface* s;
+  const aqr_field* field;
+  const aqr_sizing* sizing;
+  const aqr_sampling_options* options;
+  aqr_lines* lines;
+  aqr_grower grower;
+  landing* landings;
+  size_t n_landings, landing_capacity;
+  aqr_index* landing_of; /* per chain line: its newest landing */
+  size_t n_chains;
+  double* marks; /* positions along the parent, in spacings */
+  size_t n_marks, mark_capacity;
+  size_t done; /* parents asked, of this round */
+} sampler;
+
+/* ---- chains ---- */
+
+/* Curvature of a chain at its i-th sample as seen at the scale `w`: of the circle through three of its points. */
+static double chain_curvature(const aqr_sample* a, size_t n, size_t i, double w)
+{
+  size_t j = i, k = i;
+  while (j > 0 && (double)(a[i].arc - a[j].arc) < w)
+    j--;
+  while (k + 1 < n && (double)(a[k].arc - a[i].arc) < w)
+    k++;
+  vec3 u = v3_sub(a[i].p, a[j].p), v = v3_sub(a[k].p, a[i].p), e = v3_sub(a[k].p, a[j].p);
+  double area = v3_norm(v3_cross(u, v)), product = v3_norm(u) * v3_norm(v) * v3_norm(e);
+  return product > 0 ? 2 * area / product : 0;
+}
+
+static aqr_status add_chain(sampler* m, const aqr_chains* chains, const aqr_chain* chain)
+{
+  const aqr_surface* s = m->s;
+  size_t n = chain->count + 1;
+  aqr_sample* a = AQR_NEW0(m->c, aqr_sample, n);
+  if (!a)
+    return AQR_OUT_OF_MEMORY;
+  for (size_t i = 0; i < n; i++)
+  {
+    aqr_index h = chains->half_edges[chain->first + (i + 1 < n ? i : i - 1)];
+    a[i].p = aqr_point(s, i + 1 < n ? aqr_from(s, h) : aqr_to(s, h));
+    a[i].edge = h;
+    a[i].face = aqr_face_of(h);
+    if (i > 0)
+      a[i].arc = a[i - 1].arc + (float)v3_norm(v3_sub(a[i].p, a[i - 1].p));
+  }
+  double sigma = 0;
+  for (size_t i = 0; i + 1 < n; i++)
+  {
+    vec3 d = v3_sub(a[i + 1].p, a[i].p);
+    double length = v3_norm(d), along, across;
+    aqr_sizing_at(s, m->field, m->sizing, a[i].face, v3_unit(d), &along, &across);
+    aqr_index other = aqr_any_twin(s, a[i].edge);
+    if (other != AQR_NONE)
+    {
+      double there;
+      aqr_sizing_at(s, m->field, m->sizing, aqr_face_of(other), v3_unit(d), &there, &across);
+      along = fmin(along, there);
+    }
+    if (chain->is_feature || m->options->boundary_lines)
+    {
+      double k = chain_curvature(a, n, i, along / 2), e = m->options->tolerance;
+      if (k > 0 && 2 / k > e)
+        along = fmin(along, 2 * sqrt(e * (2 / k - e)));
+    }
+    a[i].sigma = (float)sigma;
+    sigma += length / fmax(along, length * 1e-3);
+  }
+  a[n - 1].sigma = (float)sigma;
+  aqr_line line = { .count = n,
+    .type = chain->is_feature ? AQR_LINE_FEATURE : AQR_LINE_BOUNDARY,
+    .ends = { AQR_END_CORNER, AQR_END_CORNER },
+    .closed = chain->closed,
+    .is_chain = true,
+    .partner = { AQR_NONE, AQR_NONE } };
+  if (chain->closed)
+    line.ends[0] = line.ends[1] = AQR_END_LOOP;
+  aqr_status status = aqr_lines_add(m->c, m->lines, s, &line, a);
+  AQR_DROP(m->c, a, n);
+  return status;
+}
+
+/* The chain line and the position on it, in spacings, of a point on a boundary or seam edge. */
+static bool on_chain(const sampler* m, const aqr_sample* at, aqr_index* chain, double* sigma)
+{
+  const aqr_lines* l = m->lines;
+  aqr_index other = aqr_any_twin(m->s, at->edge);
+  for (aqr_index k = l->head[aqr_face_of(at->edge)]; k != AQR_NONE; k = l->segments[k].next)
+  {
+    aqr_index n = l->segments[k].sample;
+    const aqr_sample* a = &l->samples[n];
+    if (!l->lines[l->segments[k].line].is_chain || (a->edge != at->edge && a->edge != other))
+      continue;
+    double t = a->edge == at->edge ? at->t : 1 - at->t;
+    *chain = l->segments[k].line;
+    *sigma = (double)a->sigma + t * (double)(a[1].sigma - a->sigma);
+    return true;
+  }
+  return false;
+}
+
+static aqr_status land(sampler* m, const aqr_sample* at)
+{
+  aqr_index chain;
+  double sigma;
+  if (!on_chain(m, at, &chain, &sigma))
+    return AQR_OK;
+  if (!AQR_RESERVE(m->c, m->landings, m->landing_capacity, m->n_landings + 1))
+    return AQR_OUT_OF_MEMORY;
+  m->landings[m->n_landings] = (landing){ sigma, m->landing_of[chain] };
+  m->landing_of[chain] = (aqr_index)m->n_landings++;
+  return AQR_OK;
+}
+
+/* ---- growing and committing ---- */
+
+static bool on_border(uint8_t end)
+{
+  return end == AQR_END_BOUNDARY || end == AQR_END_FEATURE;
+}
+
+/* Whether a grown line is worth keeping: long enough, or spanning from chain to chain, or closed. */
+static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
+{
+  if (line->count < 2)
+    return false;
+  if (line->closed || (on_border(line->ends[0]) && on_border(line->ends[1])))
+    return true;
+  return (double)samples[line->count - 1].sigma > least_length;
+}
+
+static aqr_status cross_seams(sampler* m, aqr_index from);
+
+/* Commits the grower's line; *id is AQR_NONE where it was not worth keeping. */
+static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
+{
+  aqr_grower* g = &m->grower;
+  *id = AQR_NONE;
+  if (!worth_keeping(&g->line, g->samples))
+    return AQR_OK;
+  *id = (aqr_index)m->lines->n_lines;
+  g->line.partner[0] = partner;
+  aqr_status status = aqr_lines_add(m->c, m->lines, m->s, &g->line, g->samples);
+  for (unsigned i = 0; i < 2 && status == AQR_OK; i++)
+    if (on_border(g->line.ends[i]) && !(i == 0 && partner != AQR_NONE))
+      status = land(m, &g->samples[i ? g->line.count - 1 : 0]);
+  return status;
+}
+
+/* A line that has reached a seam goes on from the same point on the other side, unless a line is too near there. */
+static aqr_status cross_seam(sampler* m, aqr_index sample, aqr_index* id)
+{
+  const aqr_surface* s = m->s;
+  const aqr_sample a = m->lines->samples[sample];
+  aqr_index here = aqr_sample_half_edge(s, &a, a.face), h = aqr_any_twin(s, here);
+  *id = AQR_NONE;
+  if (h == AQR_NONE)
+    return AQR_OK;
+  double t = h == a.edge ? a.t : 1 - a.t;
+  vec3 e = v3_unit(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
+  vec3 inward = v3_cross(v3_unit(aqr_face_cross(s, aqr_face_of(h))), e);
+  double along, across;
+  bool allowed;
+  aqr_sizing_at(s, m->field, m->sizing, aqr_face_of(h), inward, &along, &across);
+  aqr_status status = aqr_grow_allowed(m->c, &m->grower, aqr_face_of(h), a.p, inward, node_distance * across, &allowed);
+  if (status != AQR_OK || !allowed)
+    return status;
+  status = aqr_grow_from_border(m->c, &m->grower, h, t, inward);
+  return status == AQR_OK ? commit(m, sample, id) : status;
+}
+
+/* Continues line `from` over the seams at its ends, and the continuations over theirs. */
+static aqr_status cross_seams(sampler* m, aqr_index from)
+{
+  for (aqr_index id = from; id < m->lines->n_lines; id++)
+    for (unsigned i = 0; i < 2; i++)
+    {
+      const aqr_line* line = &m->lines->lines[id];
+      if (line->ends[i] != AQR_END_FEATURE || line->partner[i] != AQR_NONE)
+        continue;
+      aqr_index sample = (aqr_index)(line->first + (i ? line->count - 1 : 0)), next;
+      aqr_status status = cross_seam(m, sample, &next);
+      if (status != AQR_OK)
+        return status;
+      if (next != AQR_NONE)
+        m->lines->lines[id].partner[i] = (aqr_index)m->lines->lines[next].first;
+    }
+  return AQR_OK;
+}
+
+/* A seed inside face f, for a line along `d`, at least `distance` from its family. */
+static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double distance)
+{
+  bool allowed;
+  aqr_index id;
+  aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
+  if (status != AQR_OK || !allowed)
+    return status;
+  const aqr_surface* s = m->s;
+  aqr_place at = { f, { 0, 0, 0 } };
+  vec3 n = aqr_face_cross(s, f);
+  double sum = 0;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    vec3 a = aqr_point(s, s->corner[3 * f + (i + 1) % 3]), b = aqr_point(s, s->corner[3 * f + (i + 2) % 3]);
+    at.bary[i] = fmax(1e-6, v3_dot(n, v3_cross(v3_sub(a, p), v3_sub(b, p))));
+    sum += at.bary[i];
+  }
+  for (unsigned i = 0; i < 3; i++)
+    at.bary[i] = sum > 0 ? at.bary[i] / sum : 1.0 / 3;
+  status = aqr_grow_inside(m->c, &m->grower, &at, d);
+  if (status == AQR_OK)
+    status = commit(m, AQR_NONE, &id);
+  return status == AQR_OK && id != AQR_NONE ? cross_seams(m, id) : status;
+}
+
+/* Seeds to one or both sides of a chain. */
+static aqr_status seed_on_chain(sampler* m, aqr_index h, double t, double distance)
+{
+  const aqr_surface* s = m->s;
+  for (unsigned side = 0; side < 2; side++)
+  {
+    aqr_index k = side ? aqr_any_twin(s, h) : h;
+    if (k == AQR_NONE)
+      break;
+    vec3 e = v3_unit(v3_sub(aqr_point(s, aqr_to(s, k)), aqr_point(s, aqr_from(s, k))));
+    vec3 inward = v3_cross(v3_unit(aqr_face_cross(s, aqr_face_of(k))), e);
+    vec3 p = aqr_edge_point(s, k, side ? 1 - t : t);
+    bool allowed;
+    aqr_index id;
+    aqr_status status = aqr_grow_allowed(m->c, &m->grower, aqr_face_of(k), p, inward, distance, &allowed);
+    if (status == AQR_OK && allowed)
+    {
+      status = aqr_grow_from_border(m->c, &m->grower, k, side ? 1 - t : t, inward);
+      if (status == AQR_OK)
+        status = commit(m, AQR_NONE, &id);
+      if (status == AQR_OK && id != AQR_NONE)
+      {
+        /* its first end lies on the chain: the other side goes on from there */
+        return cross_seams(m, id);
+      }
+    }
+    if (status != AQR_OK)
+      return status;
+  }
+  return AQR_OK;
+}
+
+/* ---- gaps along a parent ---- */
+
+static aqr_status mark(sampler* m, double sigma)
+{
+  if (!AQR_RESERVE(m->c, m->marks, m->mark_capacity, m->n_marks + 1))
+    return AQR_OUT_OF_MEMORY;
+  m->marks[m->n_marks++] = sigma;
+  return AQR_OK;
+}
+
+/* Marks where committed lines cross the parent. */
+static aqr_status mark_crossings(sampler* m, const aqr_line* parent)
+{
+  const aqr_lines* l = m->lines;
+  aqr_status status = AQR_OK;
+  for (size_t i = parent->first; i + 1 < parent->first + parent->count; i++)
+  {
+    const aqr_sample* a = &l->samples[i];
+    vec3 d = v3_sub(a[1].p, a->p);
+    for (aqr_index k = l->head[a->face]; k != AQR_NONE; k = l->segments[k].next)
+    {
+      const aqr_sample* b = &l->samples[l->segments[k].sample];
+      if (l->lines[l->segments[k].line].is_chain || b == a || !aqr_chords_cross(m->s, a->face, a, a + 1, b, b + 1))
+        continue;
+      /* where along a: the ratio of b's distances from a's ends */
+      vec3 e = v3_sub(b[1].p, b->p);
+      vec3 u = v3_cross(e, v3_sub(a->p, b->p)), v = v3_cross(e, d);
+      double n = v3_norm2(v), t = n > 0 ? fmin(1, fmax(0, -v3_dot(u, v) / n)) : 0.5;
+      AQR_TRY(mark(m, (double)a->sigma + t * (double)(a[1].sigma - a->sigma)));
+    }
+  }
+done:
+  return status;
+}
+
+static int by_value(const void* a, const void* b)
+{
+  double x = *(const double*)a, y = *(const double*)b;
+  return (x > y) - (x < y);
+}
+
+static aqr_status seed_at(sampler* m, aqr_index parent, double sigma)
+{
+  const aqr_line line = m->lines->lines[parent];
+  size_t low = line.first, high = line.first + line.count - 1;
+  while (high - low > 1)
+  {
+    size_t middle = (low + high) / 2;
+    if ((double)m->lines->samples[middle].sigma <= sigma)
+      low = middle;
+    else
+      high = middle;
+  }
+  const aqr_sample a = m->lines->samples[low], b = m->lines->samples[low + 1];
+  double span = (double)(b.sigma - a.sigma), t = span > 0 ? (sigma - (double)a.sigma) / span : 0.5;
+  t = fmin(1 - 1e-3, fmax(1e-3, t));
+  vec3 d = v3_sub(b.p, a.p), p = v3_madd(a.p, t, d);
+  double along = span > 0 ? v3_norm(d) / span : 0;
+  if (line.is_chain)
+    return seed_on_chain(m, a.edge, t, seed_distance * along);
+  vec3 n = v3_unit(aqr_face_cross(m->s, a.face));
+  return seed_inside(m, a.face, p, v3_unit(v3_cross(n, d)), seed_distance * along);
+}
+
+/* Fills the gaps of one parent with seeds. */
+static aqr_status ask_parent(sampler* m, aqr_index parent)
+{
+  const aqr_line line = m->lines->lines[parent];
+  double end = (double)m->lines->samples[line.first + line.count - 1].sigma;
+  aqr_status status = AQR_OK;
+  m->n_marks = 0;
+  if (line.is_chain)
+    for (aqr_index k = m->landing_of[parent]; k != AQR_NONE; k = m->landings[k].next)
+      AQR_TRY(mark(m, m->landings[k].sigma));
+  else
+    AQR_TRY(mark_crossings(m, &line));
+  bool bounded[2] = { line.is_chain || on_border(line.ends[0]), line.is_chain || on_border(line.ends[1]) };
+  if (line.closed && m->n_marks == 0)
+    bounded[0] = bounded[1] = false;
+  if (bounded[0] && !line.closed)
+    AQR_TRY(mark(m, 0));
+  if (bounded[1] && !line.closed)
+    AQR_TRY(mark(m, end));
+  qsort(m->marks, m->n_marks, sizeof *m->marks, by_value);
+  size_t n = m->n_marks;
+  if (line.closed && n)
+    AQR_TRY(mark(m, m->marks[0] + end)); /* around the seam of the loop */
+  if (n == 0)
+  {
+    /* no neighbour yet: whole spacings from the middle outwards */
+    for (int i = 0; i <= end / 2 && i < most_seeds_per_line; i++)
+      for (int side = i ? -1 : 1; side <= 1; side += 2)
+        if (end / 2 + side * i > 0 && end / 2 + side * i < end)
+          AQR_TRY(seed_at(m, parent, end / 2 + side * i));
+    return AQR_OK;
+  }
+  /* the marks are copied out as they are used: growing lines use the same buffer no more, but new parents do later */
+  double first = m->marks[0], last = m->marks[m->n_marks - 1];
+  for (size_t i = 0; i + 1 < m->n_marks; i++)
+  {
+    double a = m->marks[i], gap = m->marks[i + 1] - a;
+    int pieces = (int)fmin(floor(gap + 0.5), most_seeds_per_line);
+    for (int k = 1; k < pieces; k++)
+    {
+      double at = a + gap * k / pieces;
+      AQR_TRY(seed_at(m, parent, at > end ? at - end : at));
+    }
+  }
+  if (!line.closed)
+  {
+    for (int k = 1; first - k > 0.25 && k < most_seeds_per_line; k++)
+      AQR_TRY(seed_at(m, parent, first - k));
+    for (int k = 1; last + k < end - 0.25 && k < most_seeds_per_line; k++)
+      AQR_TRY(seed_at(m, parent, last + k));
+  }
+done:
+  return status;
+}
+
+/* Asks every line for seeds, old ones first, until a whole round brings none. */
+static aqr_status fill_gaps(sampler* m, size_t first)
+{
+  for (int round = 0; round < most_rounds; round++)
+  {
+    size_t before = m->lines->n_lines;
+    for (size_t i = round ? 0 : first; i < m->lines->n_lines; i++)
+    {
+      if (i % 16 == 0 && !aqr_step(m->c, 0.9 * (double)i / (double)m->lines->n_lines))
+        return AQR_CANCELLED;
+      aqr_status status = ask_parent(m, (aqr_index)i);
+      if (status != AQR_OK)
+        return status;
+    }
+    if (m->lines->n_lines == before)
+      break;
+  }
+  return AQR_OK;
+}
+
+/* ---- seeds where there are no lines ---- */
+
+/* How good a place face f is for a first seed: confidence times relative anisotropy (paper 3 and 4.1), in levels. */
+static int level(const sampler* m, aqr_index f)
+{
+  double a = 0;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    size_t v = m->s->corner[3 * f + i];
+    double p = fabs(m->field->k_min[v]), q = fabs(m->field->k_max[v]), sum = p + q;
+    double strength = sum / (sum + 1); /* of a curvature radius against the diagonal */
+    a += sum > 0 ? fabs(m->field->k_max[v] - m->field->k_min[v]) / sum * strength : 0;
+  }
+  double confidence = (double)m->field->face_confidence[f];
+  double score = confidence >= m->options->min_cosine ? confidence * a / 3 : 0;
+  int l = (int)(fmin(1, fmax(0, score)) * (score_levels - 1));
+  return score_levels - 1 - l;
+}
+
+static uint32_t scramble(uint32_t x)
+{
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  x ^= x >> 16;
+  return x;
+}
+
+/* Faces in order of their level, those of one level in a fixed random order. */
+static aqr_status order_faces(sampler* m, aqr_index* order)
+{
+  aqr_context* c = m->c;
+  size_t n = m->s->n_faces, count[score_levels + 1] = { 0 };
+  uint8_t* of = AQR_NEW(c, uint8_t, n);
+  if (!of)
+    return AQR_OUT_OF_MEMORY;
+  for (aqr_index f = 0; f < n; f++)
+  {
+    of[f] = (uint8_t)level(m, f);
+    count[of[f] + 1]++;
+  }
+  for (int l = 0; l < score_levels; l++)
+    count[l + 1] += count[l];
+  size_t start[score_levels];
+  memcpy(start, count, sizeof start);
+  for (aqr_index f = 0; f < n; f++)
+    order[start[of[f]]++] = f;
+  for (int l = 0; l < score_levels; l++)
+    for (size_t i = count[l + 1]; i > count[l] + 1; i--)
+    {
+      size_t j = count[l] + scramble((uint32_t)i + m->options->seed * 0x9e3779b9u) % (i - count[l]);
+      aqr_index f = order[i - 1];
+      order[i - 1] = order[j];
+      order[j] = f;
+    }
+  AQR_DROP(c, of, n);
+  return AQR_OK;
+}
+
+/* Marks the faces connected to f whose centre is within `distance`: no seed of the same round is needed there. */
+static aqr_status cover(sampler* m, uint8_t* covered, aqr_index** stack, size_t* capacity, aqr_index f, double distance)
+{
+  const aqr_surface* s = m->s;
+  vec3 p = aqr_point(s, s->corner[3 * f]);
+  size_t n = 0;
+  covered[f] = 1;
+  if (!AQR_RESERVE(m->c, *stack, *capacity, 1))
+    return AQR_OUT_OF_MEMORY;
+  (*stack)[n++] = f;
+  while (n)
+  {
+    aqr_index g = (*stack)[--n];
+    for (unsigned i = 0; i < 3; i++)
+    {
+      aqr_index t = aqr_twin(s, 3 * g + i);
+      if (t == AQR_NONE || covered[aqr_face_of(t)] ||
+          v3_norm2(v3_sub(aqr_point(s, aqr_from(s, t)), p)) > distance * distance)
+        continue;
+      covered[aqr_face_of(t)] = 1;
+      if (!AQR_RESERVE(m->c, *stack, *capacity, n + 1))
+        return AQR_OUT_OF_MEMORY;
+      (*stack)[n++] = aqr_face_of(t);
+    }
+  }
+  return AQR_OK;
+}
+
+/* Seeds both families at every face, best first, that is far from all lines of the family; each seed's line is a parent
+ * at once, so that the first seed of a component covers it. */
+static aqr_status cover_surface(sampler* m)
+{
+  aqr_context* c = m->c;
+  const aqr_surface* s = m->s;
+  aqr_status status = AQR_OK;
+  size_t capacity = 0;
+  aqr_index* stack = NULL;
+  aqr_index* order = AQR_NEW(c, aqr_index, s->n_faces);
+  uint8_t* covered = AQR_NEW0(c, uint8_t, s->n_faces);
+  AQR_REQUIRE(order && covered, AQR_OUT_OF_MEMORY);
+  AQR_TRY(order_faces(m, order));
+  for (size_t i = 0; i < s->n_faces; i++)
+  {
+    aqr_index f = order[i];
+    if (covered[f])
+      continue;
+    if (i % 256 == 0)
+      AQR_REQUIRE(aqr_step(c, 0.9 * (double)i / (double)s->n_faces), AQR_CANCELLED);
+    vec3 n = v3_unit(aqr_face_cross(s, f));
+    vec3 d = v3_load(m->field->cross + 3 * (size_t)s->corner[3 * f]);
+    vec3 p = { 0, 0, 0 };
+    for (unsigned k = 0; k < 3; k++)
+      p = v3_madd(p, 1.0 / 3, aqr_point(s, s->corner[3 * f + k]));
+    double along, across;
+    aqr_sizing_at(s, m->field, m->sizing, f, d, &along, &across);
+    size_t before = m->lines->n_lines;
+    AQR_TRY(seed_inside(m, f, p, d, cover_distance * across));
+    AQR_TRY(seed_inside(m, f, p, v3_cross(n, d), cover_distance * along));
+    AQR_TRY(cover(m, covered, &stack, &capacity, f, 0.5 * fmin(along, across)));
+    if (m->lines->n_lines > before)
+      AQR_TRY(fill_gaps(m, before));
+  }
+done:
+  AQR_DROP(c, order, s->n_faces);
+  AQR_DROP(c, covered, s->n_faces);
+  AQR_DROP(c, stack, capacity);
+  return status;
+}
+
+aqr_status aqr_sample_lines(aqr_context* c,
+  const aqr_surface* s,
+  const aqr_field* field,
+  const aqr_sizing* sizing,
+  const aqr_chains* chains,
+  const aqr_sampling_options* options,
+  aqr_lines* lines,
+  aqr_report* report)
+{
+  sampler m = {
+    .c = c, .s = s, .field = field, .sizing = sizing, .options = options, .lines = lines, .n_chains = chains->n_chains
+  };
+  aqr_status status = aqr_lines_init(c, s, lines);
+  if (status != AQR_OK)
+    return status;
+  AQR_TRY(aqr_grower_init(c, s, field, sizing, lines, &m.grower));
+  m.landing_of = AQR_NEW(c, aqr_index, m.n_chains);
+  AQR_REQUIRE(m.landing_of, AQR_OUT_OF_MEMORY);
+  for (size_t i = 0; i < m.n_chains; i++)
+    m.landing_of[i] = AQR_NONE;
+  for (size_t i = 0; i < m.n_chains; i++)
+    AQR_TRY(add_chain(&m, chains, &chains->chains[i]));
+  AQR_TRY(fill_gaps(&m, 0));
+  AQR_TRY(cover_surface(&m));
+  report->lines = lines->n_lines;
+  report->line_samples = lines->n_samples;
+  report->proximity_queries += m.grower.cell.queries;
+done:
+  aqr_grower_free(c, &m.grower);
+  AQR_DROP(c, m.landing_of, m.n_chains);
+  AQR_DROP(c, m.landings, m.landing_capacity);
+  AQR_DROP(c, m.marks, m.mark_capacity);
+  if (status != AQR_OK)
+    aqr_lines_free(c, lines);
+  return status;
+}
