@@ -400,13 +400,13 @@ done:
   return status;
 }
 
-/* Asks every line for seeds, old ones first, until a whole round brings none. */
+/* Asks every line from `first` on for seeds, old ones first, until a whole round brings none. */
 static aqr_status fill_gaps(sampler* m, size_t first)
 {
   for (int round = 0; round < most_rounds; round++)
   {
     size_t before = m->lines->n_lines;
-    for (size_t i = round ? 0 : first; i < m->lines->n_lines; i++)
+    for (size_t i = first; i < m->lines->n_lines; i++)
     {
       if (i % 16 == 0 && !aqr_step(m->c, 0.9 * (double)i / (double)m->lines->n_lines))
         return AQR_CANCELLED;
@@ -573,6 +573,7 @@ aqr_status aqr_sample_lines(aqr_context* c,
     AQR_TRY(add_chain(&m, chains, &chains->chains[i]));
   AQR_TRY(fill_gaps(&m, 0));
   AQR_TRY(cover_surface(&m));
+  AQR_TRY(fill_gaps(&m, 0));
   report->lines = lines->n_lines;
   report->line_samples = lines->n_samples;
   report->proximity_queries += m.grower.cell.queries;

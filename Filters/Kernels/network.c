@@ -1,0 +1,886 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Paper 5: intersections per face, edges along lines, and the half-edge structure. */
+#include "network.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct builder
+{
+  aqr_context* c;
+  const aqr_surface* s;
+  const aqr_lines* l;
+  const aqr_chains* chains;
+  double tolerance[2]; /* of feature and boundary chains */
+  aqr_network* net;
+  size_t* first; /* per sample: its chord's crossings begin here in `on`; n_samples + 1 */
+  aqr_index* on; /* crossings along chords, in order */
+  size_t n_on;
+  aqr_index* alive;   /* per line: its nodes that are alive */
+  aqr_index* stop_of; /* per sample: the stop at a line's end on a chain, or AQR_NONE */
+  aqr_index* node_of; /* per cleaned point: the stop of a node of the feature graph */
+} builder;
+
+/* ---- crossings ---- */
+
+static aqr_status find_crossings(builder* b)
+{
+  const aqr_surface* s = b->s;
+  const aqr_lines* l = b->l;
+  aqr_network* net = b->net;
+  for (aqr_index f = 0; f < s->n_faces; f++)
+  {
+    if (f % 65536 == 0 && !aqr_step(b->c, 0.2 * (double)f / (double)s->n_faces))
+      return AQR_CANCELLED;
+    for (aqr_index i = l->head[f]; i != AQR_NONE; i = l->segments[i].next)
+    {
+      aqr_index p = l->segments[i].sample;
+      if (l->lines[l->segments[i].line].is_chain)
+        continue;
+      for (aqr_index j = l->segments[i].next; j != AQR_NONE; j = l->segments[j].next)
+      {
+        aqr_index q = l->segments[j].sample;
+        if (l->lines[l->segments[j].line].is_chain)
+          continue;
+        int turn = aqr_chords_cross(s, f, &l->samples[p], &l->samples[p + 1], &l->samples[q], &l->samples[q + 1]);
+        if (!turn)
+          continue;
+        if (!AQR_RESERVE(b->c, net->crossings, net->crossing_capacity, net->n_crossings + 1))
+          return AQR_OUT_OF_MEMORY;
+        net->crossings[net->n_crossings++] = (aqr_crossing){ { p, q },
+          { l->segments[i].line, l->segments[j].line },
+          { AQR_NONE, AQR_NONE },
+          { AQR_NONE, AQR_NONE },
+          (int8_t)turn,
+          true };
+      }
+    }
+  }
+  return net->n_crossings < AQR_NONE / 8 ? AQR_OK : AQR_TOO_LARGE;
+}
+
+static aqr_status list_by_chord(builder* b)
+{
+  const aqr_network* net = b->net;
+  size_t n = b->l->n_samples;
+  b->n_on = 2 * net->n_crossings;
+  b->first = AQR_NEW0(b->c, size_t, n + 2);
+  b->on = AQR_NEW(b->c, aqr_index, b->n_on);
+  if (!b->first || !b->on)
+    return AQR_OUT_OF_MEMORY;
+  for (size_t i = 0; i < net->n_crossings; i++)
+    for (unsigned k = 0; k < 2; k++)
+      b->first[net->crossings[i].chord[k] + 2]++;
+  for (size_t i = 0; i < n; i++)
+    b->first[i + 2] += b->first[i + 1];
+  for (size_t i = 0; i < net->n_crossings; i++)
+    for (unsigned k = 0; k < 2; k++)
+      b->on[b->first[net->crossings[i].chord[k] + 1]++] = (aqr_index)i;
+  return AQR_OK;
+}
+
+static unsigned side_of(const aqr_crossing* x, aqr_index chord)
+{
+  return x->chord[0] == chord ? 0 : 1;
+}
+
+/* Whether x's other chord runs from the right of `chord` to its left (1) or from its left (-1). */
+static int turn_on(const aqr_crossing* x, aqr_index chord)
+{
+  return side_of(x, chord) == 0 ? x->turn : -x->turn;
+}
+
+static vec3 chord_start(const builder* b, aqr_index chord)
+{
+  return b->l->samples[chord].p;
+}
+
+static vec3 chord_vector(const builder* b, aqr_index chord)
+{
+  return v3_sub(b->l->samples[chord + 1].p, b->l->samples[chord].p);
+}
+
+/* Where along chord a, from 0 to 1, the line of chord q meets it. */
+static double meet(const builder* b, aqr_index a, aqr_index q)
+{
+  vec3 e = chord_vector(b, q), d = chord_vector(b, a);
+  vec3 u = v3_cross(e, v3_sub(chord_start(b, a), chord_start(b, q))), v = v3_cross(e, d);
+  double n = v3_norm2(v);
+  return n > 0 ? fmin(1, fmax(0, -v3_dot(u, v) / n)) : 0.5;
+}
+
+/* Orientation of three chords of face f that cross each other pairwise: the sign of the determinant of their lines,
+ * decided once per triple, for the chords in ascending order, so that the three orders that follow from it agree. Where
+ * the three meet in one point the last chord counts as shifted to its left. */
+static int triple(const builder* b, aqr_index f, aqr_index a, aqr_index p, aqr_index q)
+{
+  aqr_index k[3] = { a, p, q };
+  int parity = 1;
+  for (unsigned i = 0; i < 3; i++) /* three compare-and-swaps of neighbours sort three */
+  {
+    unsigned j = i % 2;
+    if (k[j] > k[j + 1])
+    {
+      aqr_index swap = k[j];
+      k[j] = k[j + 1];
+      k[j + 1] = swap;
+      parity = -parity;
+    }
+  }
+  const aqr_sample* m = b->l->samples;
+  vec3 x = v3_madd(chord_start(b, k[0]), meet(b, k[0], k[1]), chord_vector(b, k[0]));
+  vec3 n = aqr_face_cross(b->s, f);
+  int side = v3_dot(n, v3_cross(chord_vector(b, k[2]), v3_sub(x, chord_start(b, k[2])))) > 0 ? 1 : -1;
+  int turn = aqr_chords_cross(b->s, f, &m[k[0]], &m[k[0] + 1], &m[k[1]], &m[k[1] + 1]);
+  return parity * side * turn;
+}
+
+/* Whether crossing x comes before crossing y along chord a. */
+static bool comes_before(const builder* b, aqr_index a, aqr_index x, aqr_index y)
+{
+  const aqr_crossing *cx = &b->net->crossings[x], *cy = &b->net->crossings[y];
+  aqr_index p = cx->chord[!side_of(cx, a)], q = cy->chord[!side_of(cy, a)], f = b->l->samples[a].face;
+  const aqr_sample* m = b->l->samples;
+  if (aqr_chords_cross(b->s, f, &m[p], &m[p + 1], &m[q], &m[q + 1]))
+    return triple(b, f, a, p, q) * turn_on(cx, a) * turn_on(cy, a) > 0;
+  /* p and q do not cross, so q lies whole on one side of p: on that of a's start or on that of its end */
+  bool wraps = aqr_border_before(b->s, f, &m[p + 1], &m[p]);
+  const aqr_sample *low = wraps ? &m[p + 1] : &m[p], *high = wraps ? &m[p] : &m[p + 1];
+  bool start = aqr_border_before(b->s, f, low, &m[a]) && aqr_border_before(b->s, f, &m[a], high);
+  bool other = aqr_border_before(b->s, f, low, &m[q]) && aqr_border_before(b->s, f, &m[q], high);
+  return start != other;
+}
+
+static void order_along_chords(builder* b)
+{
+  for (size_t a = 0; a < b->l->n_samples; a++)
+    for (size_t i = b->first[a]; i < b->first[a + 1]; i++)
+      for (size_t j = i; j > b->first[a] && comes_before(b, (aqr_index)a, b->on[j], b->on[j - 1]); j--)
+      {
+        aqr_index swap = b->on[j];
+        b->on[j] = b->on[j - 1];
+        b->on[j - 1] = swap;
+      }
+}
+
+/* ---- pruning ---- */
+
+static bool ends_on_chain(const aqr_line* line, unsigned end)
+{
+  return line->ends[end] == AQR_END_BOUNDARY || line->ends[end] == AQR_END_FEATURE;
+}
+
+/* Lines with fewer than two nodes have no edge: they go, and their crossings with them, until every line left has. */
+static aqr_status prune(builder* b)
+{
+  const aqr_lines* l = b->l;
+  b->alive = AQR_NEW0(b->c, aqr_index, l->n_lines);
+  aqr_index* stack = AQR_NEW(b->c, aqr_index, l->n_lines);
+  if (!b->alive || !stack)
+  {
+    AQR_DROP(b->c, stack, l->n_lines);
+    return AQR_OUT_OF_MEMORY;
+  }
+  for (size_t i = 0; i < b->net->n_crossings; i++)
+    for (unsigned k = 0; k < 2; k++)
+      b->alive[b->net->crossings[i].line[k]]++;
+  size_t n = 0;
+  for (aqr_index i = 0; i < l->n_lines; i++)
+  {
+    if (l->lines[i].is_chain)
+      continue;
+    for (unsigned k = 0; k < 2; k++)
+      b->alive[i] += ends_on_chain(&l->lines[i], k);
+    if (b->alive[i] < 2)
+      stack[n++] = i;
+  }
+  while (n)
+  {
+    const aqr_line* line = &l->lines[stack[--n]];
+    for (size_t i = b->first[line->first]; i < b->first[line->first + line->count - 1]; i++)
+    {
+      aqr_crossing* x = &b->net->crossings[b->on[i]];
+      if (!x->alive)
+        continue;
+      x->alive = false;
+      for (unsigned k = 0; k < 2; k++)
+        if (b->alive[x->line[k]]-- == 2)
+          stack[n++] = x->line[k];
+    }
+  }
+  AQR_DROP(b->c, stack, l->n_lines);
+  return AQR_OK;
+}
+
+static bool line_lives(const builder* b, aqr_index line)
+{
+  return b->l->lines[line].is_chain || b->alive[line] >= 2;
+}
+
+/* ---- stops on chains ---- */
+
+static aqr_status add_stop(builder* b, aqr_index chain, aqr_index sample, double t, aqr_index* id)
+{
+  if (!AQR_RESERVE(b->c, b->net->stops, b->net->stop_capacity, b->net->n_stops + 1))
+    return AQR_OUT_OF_MEMORY;
+  *id = (aqr_index)b->net->n_stops++;
+  b->net->stops[*id] = (aqr_stop){ chain, sample, t, AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
+  return AQR_OK;
+}
+
+/* The chain segment a line ends on, as the chain's sample and a position in its direction. */
+static bool landing_on(const builder* b, const aqr_sample* a, aqr_index* chain, aqr_index* sample, double* t)
+{
+  const aqr_lines* l = b->l;
+  aqr_index other = aqr_any_twin(b->s, a->edge);
+  for (aqr_index k = l->head[aqr_face_of(a->edge)]; k != AQR_NONE; k = l->segments[k].next)
+  {
+    aqr_index e = l->samples[l->segments[k].sample].edge;
+    if (!l->lines[l->segments[k].line].is_chain || (e != a->edge && e != other))
+      continue;
+    *chain = l->segments[k].line;
+    *sample = l->segments[k].sample;
+    *t = e == a->edge ? a->t : 1 - a->t;
+    return true;
+  }
+  return false;
+}
+
+/* Stops where living lines end on chains; a line and its continuation over the seam share one. */
+static aqr_status stop_at_landings(builder* b)
+{
+  const aqr_lines* l = b->l;
+  for (aqr_index i = 0; i < l->n_lines; i++)
+  {
+    const aqr_line* line = &l->lines[i];
+    if (line->is_chain || !line_lives(b, i))
+      continue;
+    for (unsigned k = 0; k < 2; k++)
+    {
+      aqr_index sample = (aqr_index)(line->first + (k ? line->count - 1 : 0)), chain, at, id;
+      double t;
+      if (!ends_on_chain(line, k))
+        continue;
+      if (line->partner[k] != AQR_NONE && b->stop_of[line->partner[k]] != AQR_NONE)
+      {
+        b->stop_of[sample] = b->stop_of[line->partner[k]];
+        continue;
+      }
+      if (!landing_on(b, &l->samples[sample], &chain, &at, &t))
+        return AQR_INTERNAL;
+      aqr_status status = add_stop(b, chain, at, t, &id);
+      if (status != AQR_OK)
+        return status;
+      b->stop_of[sample] = id;
+    }
+  }
+  return AQR_OK;
+}
+
+static int by_position(const void* a, const void* b)
+{
+  const aqr_stop *x = a, *y = b;
+  if (x->chain != y->chain)
+    return x->chain < y->chain ? -1 : 1;
+  if (x->sample != y->sample)
+    return x->sample < y->sample ? -1 : 1;
+  return (x->t > y->t) - (x->t < y->t);
+}
+
+static vec3 stop_position(const builder* b, const aqr_stop* x)
+{
+  const aqr_sample* a = &b->l->samples[x->sample];
+  return x->t > 0 ? v3_madd(a->p, x->t, v3_sub(a[1].p, a->p)) : a->p;
+}
+
+/* Of the chain's samples strictly between two positions the one farthest from the chord between them; false below
+ * `least`. */
+static bool farthest(const builder* b, aqr_index low, aqr_index high, vec3 p, vec3 q, double least, aqr_index* sample)
+{
+  double best = least;
+  bool found = false;
+  vec3 d = v3_sub(q, p);
+  double n = v3_norm2(d);
+  for (aqr_index i = low; i < high; i++)
+  {
+    vec3 a = v3_sub(b->l->samples[i].p, p);
+    double t = n > 0 ? fmin(1, fmax(0, v3_dot(a, d) / n)) : 0;
+    double distance = v3_norm(v3_madd(a, -t, d));
+    if (distance > best)
+    {
+      best = distance;
+      *sample = i;
+      found = true;
+    }
+  }
+  return found;
+}
+
+/* Adds stops at samples in [low, high) until the chords between p and q keep the tolerance (Douglas and Peucker), with
+ * the stack of open stretches held by the caller. */
+static aqr_status refine(builder* b, aqr_index chain, aqr_index low, aqr_index high, vec3 p, vec3 q, double tolerance)
+{
+  enum
+  {
+    depth =
+      128 /* deeper only for chains of more than 2^128 samples when halved; stretches beyond are left as they are */
+  };
+  struct
+  {
+    aqr_index low, high;
+    vec3 p, q;
+  } stack[depth];
+  int n = 0;
+  stack[n].low = low;
+  stack[n].high = high;
+  stack[n].p = p;
+  stack[n++].q = q;
+  while (n)
+  {
+    n--;
+    aqr_index lo = stack[n].low, hi = stack[n].high, at = lo, id;
+    vec3 a = stack[n].p, z = stack[n].q;
+    if (!farthest(b, lo, hi, a, z, tolerance, &at) || n + 2 > depth)
+      continue;
+    aqr_status status = add_stop(b, chain, at, 0, &id);
+    if (status != AQR_OK)
+      return status;
+    vec3 m = b->l->samples[at].p;
+    bool left_longer = at - lo > hi - at; /* the longer half first, so that the stack stays logarithmic */
+    for (unsigned i = 0; i < 2; i++)
+    {
+      bool left = (i == 0) == left_longer;
+      stack[n].low = left ? lo : at + 1;
+      stack[n].high = left ? at : hi;
+      stack[n].p = left ? a : m;
+      stack[n++].q = left ? m : z;
+    }
+  }
+  return AQR_OK;
+}
+
+/* Stops that keep the chain's own shape; a loop gets at least three. */
+static aqr_status stop_for_shape(builder* b, aqr_index chain, size_t first, size_t end)
+{
+  const aqr_line* line = &b->l->lines[chain];
+  double tolerance = b->tolerance[line->type == AQR_LINE_FEATURE ? 0 : 1];
+  aqr_index low = (aqr_index)line->first, last = (aqr_index)(line->first + line->count - 1);
+  vec3 start = b->l->samples[low].p, p = start;
+  aqr_status status = AQR_OK;
+  if (line->closed && first == end) /* no line reaches the loop: thirds of it */
+  {
+    for (aqr_index k = 0; k < 3; k++)
+    {
+      aqr_index id, at = low + k * (last - low) / 3, to = low + (k + 1) * (last - low) / 3;
+      AQR_TRY(add_stop(b, chain, at, 0, &id));
+      AQR_TRY(refine(b, chain, at + 1, to, b->l->samples[at].p, b->l->samples[to].p, tolerance));
+    }
+    return AQR_OK;
+  }
+  if (line->closed)
+  {
+    /* the stretch over the loop's start is refined as two, with a stop at the start */
+    aqr_index id;
+    bool has_start = b->net->stops[first].sample == low && b->net->stops[first].t <= 0;
+    if (!has_start)
+      AQR_TRY(add_stop(b, chain, low, 0, &id));
+    if (end - first == 1 && has_start) /* one stop alone: two more make it a polygon */
+    {
+      AQR_TRY(add_stop(b, chain, low + (last - low) / 3, 0, &id));
+      AQR_TRY(add_stop(b, chain, low + 2 * (last - low) / 3, 0, &id));
+    }
+  }
+  aqr_index from = low + 1;
+  for (size_t i = first; i < end; i++)
+  {
+    const aqr_stop x = b->net->stops[i];
+    vec3 q = stop_position(b, &x);
+    aqr_index to = x.t > 0 ? x.sample + 1 : x.sample;
+    if (from < to)
+      AQR_TRY(refine(b, chain, from, to, p, q, tolerance));
+    from = x.sample + 1;
+    p = q;
+  }
+  if (from < last)
+    AQR_TRY(refine(b, chain, from, last, p, b->l->samples[last].p, tolerance));
+done:
+  return status;
+}
+
+/* Sorts the stops along their chains and keeps the lines' references to them right. */
+static aqr_status sort_stops(builder* b)
+{
+  aqr_network* net = b->net;
+  size_t n = net->n_stops;
+  aqr_index* rank = AQR_NEW(b->c, aqr_index, n);
+  if (!rank)
+    return AQR_OUT_OF_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    net->stops[i].left = (aqr_index)i; /* where it stood */
+  qsort(net->stops, n, sizeof *net->stops, by_position);
+  /* two stops at one place: the first serves both */
+  size_t kept = 0;
+  for (size_t i = 0; i < n; i++)
+  {
+    aqr_stop x = net->stops[i];
+    if (kept == 0 || by_position(&net->stops[kept - 1], &x) != 0 || x.t > 0)
+    {
+      net->stops[kept] = x;
+      net->stops[kept++].left = AQR_NONE;
+    }
+    rank[x.left] = (aqr_index)(kept - 1);
+  }
+  net->n_stops = kept;
+  for (size_t i = 0; i < b->l->n_samples; i++)
+    if (b->stop_of[i] != AQR_NONE)
+      b->stop_of[i] = rank[b->stop_of[i]];
+  AQR_DROP(b->c, rank, n);
+  return AQR_OK;
+}
+
+static aqr_status place_stops(builder* b)
+{
+  aqr_network* net = b->net;
+  aqr_status status = AQR_OK;
+  AQR_TRY(stop_at_landings(b));
+  AQR_TRY(sort_stops(b));
+  size_t landed = net->n_stops, first = 0;
+  for (aqr_index i = 0; i < b->l->n_lines && b->l->lines[i].is_chain; i++)
+  {
+    size_t end = first;
+    while (end < landed && net->stops[end].chain == i)
+      end++;
+    AQR_TRY(stop_for_shape(b, i, first, end));
+    first = end;
+  }
+  AQR_TRY(sort_stops(b));
+done:
+  return status;
+}
+
+/* ---- edges ---- */
+
+static aqr_status add_edge(builder* b, aqr_index from, aqr_index to, uint8_t type, aqr_index* id)
+{
+  aqr_network* net = b->net;
+  size_t old = net->edge_capacity;
+  if (net->n_edges + 1 > old || !net->from)
+  {
+    size_t wanted = old < 512 ? 1024 : 2 * old;
+    size_t halves = 2 * old, types = old;
+    if (!AQR_RESERVE(b->c, net->from, halves, 2 * wanted) || !AQR_RESERVE(b->c, net->type, types, wanted))
+    {
+      if (halves != 2 * old) /* the first array has grown already: give it back so that one capacity describes both */
+        AQR_DROP(b->c, net->from, halves);
+      return AQR_OUT_OF_MEMORY;
+    }
+    net->edge_capacity = wanted;
+  }
+  *id = (aqr_index)net->n_edges++;
+  net->from[2 * *id] = from;
+  net->from[2 * *id + 1] = to;
+  net->type[*id] = type;
+  return AQR_OK;
+}
+
+typedef struct walker
+{
+  aqr_index node; /* the newest node on the line; AQR_NONE before the first */
+  size_t sample;  /* the sample that starts the chord it lies on */
+  unsigned side;  /* of a crossing: which of its two lines */
+} walker;
+
+static void set_out(builder* b, const walker* w, aqr_index edge)
+{
+  size_t n = b->net->n_crossings;
+  if (w->node < n)
+    b->net->crossings[w->node].out[w->side] = edge;
+}
+
+static void set_in(builder* b, const walker* w, aqr_index edge)
+{
+  size_t n = b->net->n_crossings;
+  if (w->node < n)
+    b->net->crossings[w->node].in[w->side] = edge;
+}
+
+/* An edge along the line between two nodes; samples after the first node's chord start up to the second's lie on it. */
+static aqr_status join(builder* b, uint8_t type, const walker* a, const walker* z, aqr_index* edge)
+{
+  aqr_status status = add_edge(b, a->node, z->node, type, edge);
+  if (status != AQR_OK)
+    return status;
+  set_out(b, a, *edge);
+  set_in(b, z, *edge);
+  for (size_t i = a->sample + 1; i <= z->sample; i++)
+    b->net->edge_at[i] = *edge;
+  return AQR_OK;
+}
+
+/* On a stop: the outgoing half-edge of a line that ends there, on the chain's left or right. */
+static void attach(builder* b, aqr_index stop, const aqr_sample* end, aqr_index half_edge)
+{
+  aqr_stop* x = &b->net->stops[stop];
+  bool left = end->face == aqr_face_of(b->l->samples[x->sample].edge);
+  *(left ? &x->left : &x->right) = half_edge;
+}
+
+static aqr_status connect_line(builder* b, aqr_index id)
+{
+  const aqr_line* line = &b->l->lines[id];
+  const aqr_sample* m = b->l->samples;
+  size_t first = line->first, last = line->first + line->count - 1;
+  walker before = { AQR_NONE, 0, 0 }, start = before;
+  aqr_index edge = AQR_NONE, n = (aqr_index)b->net->n_crossings;
+  aqr_status status = AQR_OK;
+  if (b->stop_of[first] != AQR_NONE)
+    before = start = (walker){ n + b->stop_of[first], first, 0 };
+  for (size_t a = first; a < last; a++)
+    for (size_t i = b->first[a]; i < b->first[a + 1]; i++)
+    {
+      const aqr_crossing* x = &b->net->crossings[b->on[i]];
+      if (!x->alive)
+        continue;
+      walker here = { b->on[i], a, side_of(x, (aqr_index)a) };
+      if (before.node == AQR_NONE)
+        start = here;
+      else
+      {
+        AQR_TRY(join(b, line->type, &before, &here, &edge));
+        if (before.node == n + b->stop_of[first] && b->stop_of[first] != AQR_NONE)
+        {
+          b->net->edge_at[first] = edge;
+          attach(b, b->stop_of[first], &m[first], 2 * edge);
+        }
+      }
+      before = here;
+    }
+  if (b->stop_of[last] != AQR_NONE)
+  {
+    walker here = { n + b->stop_of[last], last, 0 };
+    AQR_TRY(join(b, line->type, &before, &here, &edge));
+    if (before.node == n + b->stop_of[first] && b->stop_of[first] != AQR_NONE)
+    {
+      b->net->edge_at[first] = edge;
+      attach(b, b->stop_of[first], &m[first], 2 * edge);
+    }
+    attach(b, b->stop_of[last], &m[last], 2 * edge + 1);
+  }
+  else if (line->closed)
+  {
+    walker end = { start.node, last, start.side };
+    AQR_TRY(join(b, line->type, &before, &end, &edge));
+    for (size_t i = first; i <= start.sample; i++)
+      b->net->edge_at[i] = edge;
+  }
+done:
+  return status;
+}
+
+/* The stop of a node of the feature graph, made when first met. */
+static aqr_status corner_stop(builder* b, aqr_index point, aqr_index* stop)
+{
+  aqr_index clean = b->s->clean[point];
+  if (b->node_of[clean] == AQR_NONE)
+  {
+    aqr_status status = add_stop(b, AQR_NONE, point, 0, &b->node_of[clean]);
+    if (status != AQR_OK)
+      return status;
+  }
+  *stop = b->node_of[clean];
+  return AQR_OK;
+}
+
+static aqr_status connect_chain(builder* b, aqr_index id, size_t first, size_t end)
+{
+  const aqr_line* line = &b->l->lines[id];
+  const aqr_sample* m = b->l->samples;
+  aqr_network* net = b->net;
+  aqr_index n = (aqr_index)net->n_crossings, edge, before = AQR_NONE, last = AQR_NONE;
+  aqr_status status = AQR_OK;
+  if (!line->closed)
+  {
+    AQR_TRY(corner_stop(b, aqr_from(b->s, m[line->first].edge), &before));
+    AQR_TRY(corner_stop(b, aqr_to(b->s, m[line->first + line->count - 2].edge), &last));
+  }
+  else
+    before = last = (aqr_index)(end - 1);
+  for (size_t i = first; i < end; i++)
+  {
+    AQR_TRY(add_edge(b, n + before, n + (aqr_index)i, line->type, &edge));
+    if (i > first || line->closed)
+      net->stops[before].out = edge;
+    net->stops[i].in = edge;
+    before = (aqr_index)i;
+  }
+  if (!line->closed)
+  {
+    AQR_TRY(add_edge(b, n + before, n + last, line->type, &edge));
+    if (end > first)
+      net->stops[before].out = edge;
+  }
+done:
+  return status;
+}
+
+/* ---- order around nodes ---- */
+
+/* Links the half-edges that leave a node, given counter-clockwise: who arrives over the twin of one goes on along the
+ * one clockwise of it, with the same region on its left. */
+static void link_around(aqr_network* net, const aqr_index* out, unsigned n)
+{
+  for (unsigned i = 0; i < n; i++)
+    net->next[out[i] ^ 1] = out[(i + n - 1) % n];
+}
+
+static unsigned push(aqr_index* out, unsigned n, aqr_index half_edge)
+{
+  if (half_edge != AQR_NONE)
+    out[n++] = half_edge;
+  return n;
+}
+
+static aqr_index forth(aqr_index edge)
+{
+  return edge == AQR_NONE ? AQR_NONE : 2 * edge;
+}
+
+static aqr_index back(aqr_index edge)
+{
+  return edge == AQR_NONE ? AQR_NONE : 2 * edge + 1;
+}
+
+/* A chain's end at a node of the feature graph. */
+typedef struct spoke
+{
+  aqr_index node, edge, out; /* stop, edge of the surface, outgoing half-edge of the network */
+} spoke;
+
+static int by_node(const void* a, const void* b)
+{
+  const spoke *x = a, *y = b;
+  return x->node != y->node ? (x->node < y->node ? -1 : 1) : (x->edge > y->edge) - (x->edge < y->edge);
+}
+
+/* The outgoing half-edge of a point from which turning counter-clockwise, over seams too, meets all faces around it. */
+static aqr_index first_around(const aqr_surface* s, aqr_index point)
+{
+  aqr_index start = s->fan[point], h = start;
+  for (;;)
+  {
+    aqr_index t = aqr_any_twin(s, h);
+    if (t == AQR_NONE)
+      return h;
+    h = aqr_next(t);
+    if (h == start)
+      return h;
+  }
+}
+
+/* Links the spokes [first, end) of one node in the order in which the surface's fan meets their edges. */
+static aqr_status link_corner(builder* b, const spoke* spokes, size_t n)
+{
+  const aqr_surface* s = b->s;
+  aqr_index* out = AQR_NEW(b->c, aqr_index, n);
+  if (!out)
+    return AQR_OUT_OF_MEMORY;
+  unsigned found = 0;
+  aqr_index start = first_around(s, b->net->stops[spokes[0].node].sample), h = start;
+  for (;;)
+  {
+    for (size_t i = 0; i < n; i++)
+      if (spokes[i].edge == aqr_edge_of(s, h))
+        found = push(out, found, spokes[i].out);
+    aqr_index last = aqr_prev(h);
+    h = aqr_any_twin(s, last);
+    if (h == AQR_NONE)
+    {
+      for (size_t i = 0; i < n; i++)
+        if (spokes[i].edge == aqr_edge_of(s, last))
+          found = push(out, found, spokes[i].out);
+      break;
+    }
+    if (h == start || found >= n)
+      break;
+  }
+  if (found == n)
+    link_around(b->net, out, found);
+  AQR_DROP(b->c, out, n);
+  return found == n ? AQR_OK : AQR_INTERNAL;
+}
+
+static aqr_status link_corners(builder* b)
+{
+  aqr_network* net = b->net;
+  const aqr_lines* l = b->l;
+  size_t n = 0, capacity = 0, e = 0;
+  spoke* spokes = NULL;
+  aqr_status status = AQR_OK;
+  aqr_index offset = (aqr_index)net->n_crossings;
+  for (aqr_index i = 0; i < l->n_lines && l->lines[i].is_chain; i++)
+  {
+    const aqr_line* line = &l->lines[i];
+    /* the chain's edges were added one after the other: find its first and its last */
+    size_t begin = e;
+    if (line->closed)
+    {
+      aqr_index origin = net->from[2 * e];
+      while (net->from[2 * e + 1] != origin)
+        e++;
+      e++;
+      continue;
+    }
+    aqr_index last = b->node_of[b->s->clean[aqr_to(b->s, l->samples[line->first + line->count - 2].edge)]];
+    while (net->from[2 * e + 1] != offset + last)
+      e++;
+    AQR_REQUIRE(AQR_RESERVE(b->c, spokes, capacity, n + 2), AQR_OUT_OF_MEMORY);
+    spokes[n++] =
+      (spoke){ net->from[2 * begin] - offset, aqr_edge_of(b->s, l->samples[line->first].edge), (aqr_index)(2 * begin) };
+    spokes[n++] =
+      (spoke){ last, aqr_edge_of(b->s, l->samples[line->first + line->count - 2].edge), (aqr_index)(2 * e + 1) };
+    e++;
+  }
+  if (n)
+    qsort(spokes, n, sizeof *spokes, by_node);
+  for (size_t i = 0, j; i < n; i = j)
+  {
+    for (j = i + 1; j < n && spokes[j].node == spokes[i].node;)
+      j++;
+    AQR_TRY(link_corner(b, spokes + i, j - i));
+  }
+done:
+  AQR_DROP(b->c, spokes, capacity);
+  return status;
+}
+
+static void link_nodes(builder* b)
+{
+  aqr_network* net = b->net;
+  for (size_t i = 0; i < net->n_crossings; i++)
+  {
+    const aqr_crossing* x = &net->crossings[i];
+    if (!x->alive)
+      continue;
+    aqr_index out[4];
+    unsigned n = push(out, 0, forth(x->out[0]));
+    n = push(out, n, x->turn > 0 ? forth(x->out[1]) : back(x->in[1]));
+    n = push(out, n, back(x->in[0]));
+    n = push(out, n, x->turn > 0 ? back(x->in[1]) : forth(x->out[1]));
+    link_around(net, out, n);
+  }
+  for (size_t i = 0; i < net->n_stops; i++)
+  {
+    const aqr_stop* x = &net->stops[i];
+    if (x->chain == AQR_NONE)
+      continue;
+    aqr_index out[4];
+    unsigned n = push(out, 0, forth(x->out));
+    n = push(out, n, x->left);
+    n = push(out, n, back(x->in));
+    n = push(out, n, x->right);
+    link_around(net, out, n);
+  }
+}
+
+/* Numbers the loops; the outer sides of boundary chains get none. */
+static void number_loops(aqr_network* net)
+{
+  size_t n = 2 * net->n_edges;
+  for (size_t h = 0; h < n; h++)
+    net->loop[h] = AQR_NONE;
+  for (size_t h = 0; h < n; h++)
+  {
+    if (net->loop[h] != AQR_NONE || (h % 2 == 1 && net->type[h / 2] == AQR_LINE_BOUNDARY))
+      continue;
+    aqr_index id = (aqr_index)net->n_loops++;
+    size_t k = h;
+    do
+    {
+      net->loop[k] = id;
+      k = net->next[k];
+    } while (k != h);
+  }
+}
+
+static aqr_status connect(builder* b)
+{
+  aqr_network* net = b->net;
+  const aqr_lines* l = b->l;
+  aqr_status status = AQR_OK;
+  size_t first = 0, landed = net->n_stops;
+  aqr_index i = 0;
+  for (; i < l->n_lines && l->lines[i].is_chain; i++)
+  {
+    size_t end = first;
+    while (end < landed && net->stops[end].chain == i)
+      end++;
+    AQR_TRY(connect_chain(b, i, first, end));
+    first = end;
+  }
+  for (; i < l->n_lines; i++)
+    if (line_lives(b, i))
+      AQR_TRY(connect_line(b, i));
+  net->next = AQR_NEW(b->c, aqr_index, 2 * net->edge_capacity);
+  net->loop = AQR_NEW(b->c, aqr_index, 2 * net->edge_capacity);
+  AQR_REQUIRE(net->next && net->loop, AQR_OUT_OF_MEMORY);
+  for (size_t h = 0; h < 2 * net->n_edges; h++)
+    net->next[h] = AQR_NONE;
+  link_nodes(b);
+  AQR_TRY(link_corners(b));
+  for (size_t h = 0; h < 2 * net->n_edges; h++)
+    AQR_REQUIRE(net->next[h] != AQR_NONE, AQR_INTERNAL);
+  number_loops(net);
+done:
+  return status;
+}
+
+aqr_status aqr_network_build(aqr_context* c,
+  const aqr_surface* s,
+  const aqr_lines* lines,
+  const aqr_chains* chains,
+  double chain_tolerance,
+  double boundary_tolerance,
+  aqr_network* net)
+{
+  memset(net, 0, sizeof *net);
+  builder b = {
+    .c = c, .s = s, .l = lines, .chains = chains, .tolerance = { chain_tolerance, boundary_tolerance }, .net = net
+  };
+  aqr_status status = AQR_OK;
+  net->n_samples = lines->n_samples;
+  net->edge_at = AQR_NEW(c, aqr_index, lines->n_samples);
+  b.stop_of = AQR_NEW(c, aqr_index, lines->n_samples);
+  b.node_of = AQR_NEW(c, aqr_index, s->n_clean);
+  AQR_REQUIRE(net->edge_at && b.stop_of && b.node_of, AQR_OUT_OF_MEMORY);
+  for (size_t i = 0; i < lines->n_samples; i++)
+    net->edge_at[i] = b.stop_of[i] = AQR_NONE;
+  for (size_t i = 0; i < s->n_clean; i++)
+    b.node_of[i] = AQR_NONE;
+  AQR_TRY(find_crossings(&b));
+  AQR_TRY(list_by_chord(&b));
+  order_along_chords(&b);
+  AQR_TRY(prune(&b));
+  AQR_TRY(place_stops(&b));
+  AQR_TRY(connect(&b));
+done:
+  AQR_DROP(c, b.first, lines->n_samples + 2);
+  AQR_DROP(c, b.on, b.n_on);
+  AQR_DROP(c, b.alive, lines->n_lines);
+  AQR_DROP(c, b.stop_of, lines->n_samples);
+  AQR_DROP(c, b.node_of, s->n_clean);
+  if (status != AQR_OK)
+    aqr_network_free(c, net);
+  return status;
+}
+
+void aqr_network_free(aqr_context* c, aqr_network* net)
+{
+  AQR_DROP(c, net->crossings, net->crossing_capacity);
+  AQR_DROP(c, net->stops, net->stop_capacity);
+  AQR_DROP(c, net->from, 2 * net->edge_capacity);
+  AQR_DROP(c, net->next, 2 * net->edge_capacity);
+  AQR_DROP(c, net->loop, 2 * net->edge_capacity);
+  AQR_DROP(c, net->type, net->edge_capacity);
+  AQR_DROP(c, net->edge_at, net->n_samples);
+  memset(net, 0, sizeof *net);
+}

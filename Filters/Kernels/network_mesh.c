@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Paper 5.1 and 5.2: from the network's loops to polygons. */
+#include "network.h"
+
+#include <string.h>
+
+/* Barycentric coordinates of p in face f, clamped into it. */
+static aqr_place place_in(const aqr_surface* s, aqr_index f, vec3 p)
+{
+  aqr_place at = { f, { 0, 0, 0 } };
+  vec3 n = aqr_face_cross(s, f);
+  double sum = 0;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    vec3 a = aqr_point(s, s->corner[3 * f + (i + 1) % 3]), b = aqr_point(s, s->corner[3 * f + (i + 2) % 3]);
+    at.bary[i] = fmax(0, v3_dot(n, v3_cross(v3_sub(a, p), v3_sub(b, p))));
+    sum += at.bary[i];
+  }
+  for (unsigned i = 0; i < 3; i++)
+    at.bary[i] = sum > 0 ? at.bary[i] / sum : 1.0 / 3;
+  return at;
+}
+
+static vec3 normal_at(const aqr_surface* s, const aqr_field* field, const aqr_place* at)
+{
+  vec3 n = { 0, 0, 0 };
+  for (unsigned i = 0; i < 3; i++)
+    n = v3_madd(n, at->bary[i], v3_load(field->normal + 3 * (size_t)s->corner[3 * at->face + i]));
+  return v3_unit(n);
+}
+
+static double size_at(const aqr_surface* s, const aqr_sizing* sizing, aqr_index face)
+{
+  double size = 0;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    const float* d = sizing->spacing + 2 * (size_t)s->corner[3 * face + i];
+    size += (double)(d[0] < d[1] ? d[0] : d[1]) / 3;
+  }
+  return size;
+}
+
+static aqr_vertex vertex_of_crossing(const aqr_surface* s,
+  const aqr_field* field,
+  const aqr_sizing* sizing,
+  const aqr_lines* lines,
+  const aqr_crossing* x)
+{
+  const aqr_sample *a = &lines->samples[x->chord[0]], *b = &lines->samples[x->chord[1]];
+  vec3 d = v3_sub(a[1].p, a->p), e = v3_sub(b[1].p, b->p);
+  vec3 u = v3_cross(e, v3_sub(a->p, b->p)), v = v3_cross(e, d);
+  double n = v3_norm2(v), t = n > 0 ? fmin(1, fmax(0, -v3_dot(u, v) / n)) : 0.5;
+  aqr_vertex r = { .position = v3_madd(a->p, t, d), .kind = AQR_VERTEX_INTERIOR, .out = AQR_NONE };
+  r.place = place_in(s, a->face, r.position);
+  r.normal = normal_at(s, field, &r.place);
+  r.size = size_at(s, sizing, a->face);
+  return r;
+}
+
+static aqr_vertex vertex_of_stop(const aqr_surface* s,
+  const aqr_field* field,
+  const aqr_sizing* sizing,
+  const aqr_lines* lines,
+  const aqr_stop* x)
+{
+  aqr_vertex r = { .out = AQR_NONE };
+  bool corner = x->chain == AQR_NONE;
+  aqr_index h = corner ? s->fan[x->sample] : lines->samples[x->sample].edge;
+  double t = corner ? 0 : x->t;
+  r.position = aqr_edge_point(s, h, t);
+  r.place.face = aqr_face_of(h);
+  r.place.bary[h % 3] = 1 - t;
+  r.place.bary[(h % 3 + 1) % 3] = t;
+  r.normal = normal_at(s, field, &r.place);
+  r.size = size_at(s, sizing, r.place.face);
+  aqr_index other = aqr_any_twin(s, h);
+  if (other != AQR_NONE && !corner)
+  {
+    aqr_place there = { aqr_face_of(other), { 0, 0, 0 } };
+    there.bary[other % 3] = t;
+    there.bary[(other % 3 + 1) % 3] = 1 - t;
+    r.normal = v3_unit(v3_add(r.normal, normal_at(s, field, &there)));
+    r.size = fmin(r.size, size_at(s, sizing, there.face));
+  }
+  r.kind = corner                                            ? AQR_VERTEX_CORNER
+           : lines->lines[x->chain].type == AQR_LINE_FEATURE ? AQR_VERTEX_FEATURE
+                                                             : AQR_VERTEX_BOUNDARY;
+  return r;
+}
+
+aqr_status aqr_network_mesh(aqr_context* c,
+  const aqr_surface* s,
+  const aqr_field* field,
+  const aqr_sizing* sizing,
+  const aqr_lines* lines,
+  const aqr_network* net,
+  aqr_polygon_mesh* mesh)
+{
+  aqr_status status = AQR_OK;
+  memset(mesh, 0, sizeof *mesh);
+  size_t n_nodes = net->n_crossings + net->n_stops;
+  aqr_index* id = AQR_NEW(c, aqr_index, n_nodes);
+  AQR_REQUIRE(id, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(AQR_RESERVE(c, mesh->vertices, mesh->vertex_capacity, n_nodes) &&
+                AQR_RESERVE(c, mesh->half_edges, mesh->half_edge_capacity, 2 * net->n_edges) &&
+                AQR_RESERVE(c, mesh->edge_type, mesh->edge_capacity, net->n_edges) &&
+                AQR_RESERVE(c, mesh->faces, mesh->face_capacity, net->n_loops),
+    AQR_OUT_OF_MEMORY);
+  for (size_t i = 0; i < n_nodes; i++)
+  {
+    bool crossing = i < net->n_crossings;
+    id[i] = (aqr_index)mesh->n_vertices;
+    if (crossing && net->crossings[i].alive)
+      mesh->vertices[mesh->n_vertices++] = vertex_of_crossing(s, field, sizing, lines, &net->crossings[i]);
+    else if (!crossing)
+      mesh->vertices[mesh->n_vertices++] = vertex_of_stop(s, field, sizing, lines, &net->stops[i - net->n_crossings]);
+  }
+  mesh->n_faces = net->n_loops;
+  mesh->n_half_edges = 2 * net->n_edges;
+  memcpy(mesh->edge_type, net->type, net->n_edges);
+  for (size_t h = 0; h < mesh->n_half_edges; h++)
+  {
+    aqr_half_edge* e = &mesh->half_edges[h];
+    e->from = id[net->from[h]];
+    e->next = net->next[h];
+    e->face = net->loop[h];
+    mesh->half_edges[e->next].prev = (aqr_index)h;
+    if (e->face != AQR_NONE)
+      mesh->faces[e->face] = (aqr_index)h;
+    if (e->face == AQR_NONE || mesh->vertices[e->from].out == AQR_NONE)
+      mesh->vertices[e->from].out = (aqr_index)h;
+  }
+done:
+  AQR_DROP(c, id, n_nodes);
+  return status;
+}
