@@ -1,0 +1,739 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAnisotropicQuadRemesher.h"
+
+#include "aqr.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkErrorCode.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSMPTools.h"
+#include "vtkSmartPointer.h"
+#include "vtkTriangleFilter.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+vtkStandardNewMacro(vtkAnisotropicQuadRemesher);
+
+namespace
+{
+//------------------------------------------------------------------------------
+// Since VTK 9.2 an algorithm asks upstream too whether it should stop, and tells the executive.
+template <typename T>
+auto ShouldAbort(T* algorithm, int) -> decltype(algorithm->CheckAbort())
+{
+  return algorithm->CheckAbort();
+}
+template <typename T>
+bool ShouldAbort(T* algorithm, long)
+{
+  return algorithm->GetAbortExecute() != 0;
+}
+
+//------------------------------------------------------------------------------
+int ReportProgress(void* user, double fraction, const char* stage)
+{
+  auto* self = static_cast<vtkAlgorithm*>(user);
+  self->SetProgressText(stage);
+  self->UpdateProgress(fraction);
+  return ShouldAbort(self, 0) ? 0 : 1;
+}
+
+//------------------------------------------------------------------------------
+void ParallelFor(void*, size_t count, size_t grain, void (*body)(void* data, size_t begin, size_t end), void* data)
+{
+  vtkSMPTools::For(0,
+    static_cast<vtkIdType>(count),
+    static_cast<vtkIdType>(grain),
+    [=](vtkIdType begin, vtkIdType end) { body(data, static_cast<size_t>(begin), static_cast<size_t>(end)); });
+}
+
+//------------------------------------------------------------------------------
+// The input as the kernels read it, with what leads back from its triangles to the cells.
+struct Triangles
+{
+  const int64_t* Corners = nullptr;
+  size_t Count = 0;
+  std::vector<vtkIdType> Cells; // input cell of a triangle; empty: triangle i is cell FirstCell + i
+  vtkIdType FirstCell = 0;
+
+  vtkIdType Cell(aqr_index triangle) const
+  {
+    return this->Cells.empty() ? this->FirstCell + static_cast<vtkIdType>(triangle) : this->Cells[triangle];
+  }
+
+  void Take(vtkPolyData* input)
+  {
+    this->FirstCell = input->GetNumberOfVerts() + input->GetNumberOfLines();
+    vtkCellArray* polys = input->GetPolys();
+    if (input->GetNumberOfStrips() == 0 && polys->IsHomogeneous() == 3)
+    {
+      this->TakeConnectivity(polys);
+      return;
+    }
+    vtkNew<vtkIdTypeArray> cells;
+    cells->SetName("cell");
+    cells->SetNumberOfValues(input->GetNumberOfPolys() + input->GetNumberOfStrips());
+    for (vtkIdType i = 0; i < cells->GetNumberOfValues(); ++i)
+    {
+      cells->SetValue(i, this->FirstCell + i);
+    }
+    vtkNew<vtkPolyData> surface;
+    surface->SetPoints(input->GetPoints());
+    surface->SetPolys(polys);
+    surface->SetStrips(input->GetStrips());
+    surface->GetCellData()->AddArray(cells);
+    vtkNew<vtkTriangleFilter> triangulate;
+    triangulate->PassVertsOff();
+    triangulate->PassLinesOff();
+    triangulate->SetInputData(surface);
+    triangulate->Update();
+    vtkPolyData* output = triangulate->GetOutput();
+    this->TakeConnectivity(output->GetPolys());
+    auto* source = vtkIdTypeArray::SafeDownCast(output->GetCellData()->GetArray("cell"));
+    this->Cells.assign(source->GetPointer(0), source->GetPointer(0) + source->GetNumberOfValues());
+  }
+
+private:
+  vtkSmartPointer<vtkCellArray> Holder;
+  std::vector<int64_t> Copy;
+
+  void TakeConnectivity(vtkCellArray* polys)
+  {
+    this->Count = static_cast<size_t>(polys->GetNumberOfCells());
+    if (polys->IsStorage64Bit())
+    {
+      this->Holder = polys;
+      this->Corners = reinterpret_cast<const int64_t*>(polys->GetConnectivityArray64()->GetPointer(0));
+      return;
+    }
+    const auto* corners = polys->GetConnectivityArray32()->GetPointer(0);
+    this->Copy.assign(corners, corners + 3 * this->Count);
+    this->Corners = this->Copy.data();
+  }
+};
+
+//------------------------------------------------------------------------------
+// Changes whenever the geometry or the connectivity of a surface does, but not with its attributes.
+vtkMTimeType GeometryTime(vtkPolyData* surface)
+{
+  vtkMTimeType time = std::max(surface->GetPoints()->GetMTime(), surface->GetPoints()->GetData()->GetMTime());
+  for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
+  {
+    time = std::max(
+      { time, cells->GetMTime(), cells->GetConnectivityArray()->GetMTime(), cells->GetOffsetsArray()->GetMTime() });
+  }
+  return time;
+}
+
+//------------------------------------------------------------------------------
+template <typename ArrayT, typename T>
+vtkSmartPointer<ArrayT> NewArray(const char* name, const T* values, size_t tuples, int components = 1)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  std::copy_n(values, tuples * static_cast<size_t>(components), array->GetPointer(0));
+  return array;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPoints> NewPoints(const double* values, size_t count, int dataType)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  if (dataType == VTK_FLOAT)
+  {
+    points->SetData(NewArray<vtkFloatArray>("Points", values, count, 3));
+  }
+  else
+  {
+    points->SetData(NewArray<vtkDoubleArray>("Points", values, count, 3));
+  }
+  return points;
+}
+
+//------------------------------------------------------------------------------
+// VTK's arrays of fixed width are declared with another name for the same 64-bit integer.
+template <typename T>
+vtkSmartPointer<vtkCellArray> NewCells(const int64_t* offsets, size_t count, const T* connectivity)
+{
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->SetData(NewArray<vtkTypeInt64Array>("Offsets", offsets, count + 1),
+    NewArray<vtkTypeInt64Array>("Connectivity", connectivity, static_cast<size_t>(offsets[count])));
+  return cells;
+}
+
+//------------------------------------------------------------------------------
+// An array whose values may be blended; others (integers, strings) name things and are copied.
+bool IsContinuous(vtkAbstractArray* array)
+{
+  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+}
+
+//------------------------------------------------------------------------------
+void InterpolatePointData(vtkPointData* from, const aqr_origin* origins, size_t count, vtkPointData* to)
+{
+  const vtkIdType points = static_cast<vtkIdType>(count);
+  vtkNew<vtkIdList> corners;
+  corners->SetNumberOfIds(3);
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* source = from->GetAbstractArray(i);
+    const int attribute = from->IsArrayAnAttribute(i);
+    // Normals are computed anew, and copied global ids would no longer be unique.
+    if (attribute == vtkDataSetAttributes::NORMALS || attribute == vtkDataSetAttributes::GLOBALIDS)
+    {
+      continue;
+    }
+    auto target = vtkSmartPointer<vtkAbstractArray>::Take(source->NewInstance());
+    target->SetName(source->GetName());
+    target->SetNumberOfComponents(source->GetNumberOfComponents());
+    target->CopyComponentNames(source);
+    target->SetNumberOfTuples(points);
+    const bool blend = IsContinuous(source);
+    for (vtkIdType p = 0; p < points; ++p)
+    {
+      const aqr_origin& origin = origins[p];
+      const auto nearest = std::max_element(origin.weight, origin.weight + 3) - origin.weight;
+      if (!blend || origin.weight[nearest] >= 1.0F)
+      {
+        target->SetTuple(p, origin.point[nearest], source);
+        continue;
+      }
+      double weights[3];
+      for (int k = 0; k < 3; ++k)
+      {
+        corners->SetId(k, origin.point[k]);
+        weights[k] = origin.weight[k];
+      }
+      target->InterpolateTuple(p, corners, source, weights);
+    }
+    const int index = to->AddArray(target);
+    if (attribute >= 0)
+    {
+      to->SetActiveAttribute(index, attribute);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void CopyCellData(vtkCellData* from, const std::vector<vtkIdType>& sources, vtkCellData* to)
+{
+  const vtkIdType count = static_cast<vtkIdType>(sources.size());
+  to->CopyGlobalIdsOff();
+  to->CopyAllocate(from, count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    to->CopyData(from, sources[static_cast<size_t>(i)], i);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkIdType> SourceCells(const Triangles& triangles, const aqr_index* source, size_t count)
+{
+  std::vector<vtkIdType> cells(count);
+  std::transform(source, source + count, cells.begin(), [&](aqr_index t) { return triangles.Cell(t); });
+  return cells;
+}
+
+//------------------------------------------------------------------------------
+std::string Quoted(const std::string& text)
+{
+  std::string quoted = "\"";
+  for (const char c : text)
+  {
+    if (c == '"' || c == '\\')
+    {
+      quoted += '\\';
+    }
+    quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return quoted + '"';
+}
+}
+
+//------------------------------------------------------------------------------
+class vtkAnisotropicQuadRemesher::vtkInternals
+{
+public:
+  ~vtkInternals() { aqr_remesher_free(this->Remesher); }
+
+  // Hands the surface to the kernels unless they hold it already.
+  aqr_status SetInput(vtkPolyData* input)
+  {
+    if (!this->Remesher)
+    {
+      const aqr_status status = aqr_remesher_new(nullptr, &this->Remesher);
+      if (status != AQR_OK)
+      {
+        return status;
+      }
+    }
+    const vtkMTimeType time = GeometryTime(input);
+    const vtkIdType first = input->GetNumberOfVerts() + input->GetNumberOfLines();
+    if (this->Points == input->GetPoints() && this->InputTime == time && this->Surface.FirstCell == first)
+    {
+      return AQR_OK;
+    }
+    this->Forget();
+    this->Surface.Take(input);
+    aqr_input view = {};
+    view.number_of_points = static_cast<size_t>(input->GetNumberOfPoints());
+    view.number_of_triangles = this->Surface.Count;
+    view.triangles = this->Surface.Corners;
+    vtkDataArray* data = input->GetPoints()->GetData();
+    vtkSmartPointer<vtkDoubleArray> converted;
+    if (auto* floats = vtkFloatArray::FastDownCast(data))
+    {
+      view.points_f = floats->GetPointer(0);
+    }
+    else if (auto* doubles = vtkDoubleArray::FastDownCast(data))
+    {
+      view.points_d = doubles->GetPointer(0);
+    }
+    else
+    {
+      converted = vtkSmartPointer<vtkDoubleArray>::New();
+      converted->DeepCopy(data);
+      view.points_d = converted->GetPointer(0);
+    }
+    const aqr_status status = aqr_remesher_set_input(this->Remesher, &view);
+    if (status == AQR_OK)
+    {
+      this->Points = input->GetPoints();
+      this->InputTime = time;
+    }
+    return status;
+  }
+
+  void Forget()
+  {
+    this->Surface = Triangles();
+    this->Points = nullptr;
+    this->InputTime = 0;
+  }
+
+  std::string Counts() const
+  {
+    const aqr_report* report = aqr_remesher_report(this->Remesher);
+    std::ostringstream text;
+    text << "{\"degenerate_triangles\": " << report->degenerate_triangles
+         << ", \"duplicate_triangles\": " << report->duplicate_triangles
+         << ", \"merged_points\": " << report->merged_points << ", \"unused_points\": " << report->unused_points
+         << ", \"split_edges\": " << report->split_edges << ", \"split_points\": " << report->split_points
+         << ", \"flipped_triangles\": " << report->flipped_triangles
+         << ", \"unorientable_edges\": " << report->unorientable_edges
+         << ", \"refined_points\": " << report->refined_points << ", \"feature_edges\": " << report->feature_edges
+         << ", \"boundary_loops\": " << report->boundary_loops << ", \"components\": " << report->components
+         << ", \"lines\": " << report->lines << ", \"line_samples\": " << report->line_samples
+         << ", \"proximity_queries\": " << report->proximity_queries << ", \"topology_cuts\": " << report->topology_cuts
+         << ", \"coarsened_components\": " << report->coarsened_components
+         << ", \"target_missed\": " << report->target_missed << ", \"tolerance\": " << report->tolerance;
+    if (const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher))
+    {
+      size_t sides[3] = { 0, 0, 0 };
+      for (size_t f = 0; f < mesh->number_of_faces; ++f)
+      {
+        sides[std::clamp<int64_t>(mesh->offsets[f + 1] - mesh->offsets[f], 3, 5) - 3]++;
+      }
+      text << ", \"points\": " << mesh->number_of_points << ", \"faces\": " << mesh->number_of_faces
+           << ", \"triangles\": " << sides[0] << ", \"quads\": " << sides[1] << ", \"larger_polygons\": " << sides[2];
+    }
+    text << "}";
+    return text.str();
+  }
+
+  std::string Stages() const
+  {
+    size_t count = 0;
+    const aqr_stage* stages = aqr_remesher_stages(this->Remesher, &count);
+    std::ostringstream text;
+    text << "[";
+    for (size_t i = 0; i < count; ++i)
+    {
+      text << (i ? ", " : "") << "{\"name\": " << Quoted(stages[i].name) << ", \"seconds\": " << stages[i].seconds
+           << ", \"peak_bytes\": " << stages[i].peak_bytes << ", \"end_bytes\": " << stages[i].end_bytes
+           << ", \"reused\": " << (stages[i].reused ? "true" : "false") << "}";
+    }
+    text << "]";
+    return text.str();
+  }
+
+  // Sentences about everything that was not as it should be.
+  void CollectWarnings(vtkPolyData* input)
+  {
+    const aqr_report* report = aqr_remesher_report(this->Remesher);
+    const std::pair<size_t, const char*> repairs[] = {
+      { report->degenerate_triangles, "degenerate triangles dropped" },
+      { report->duplicate_triangles, "duplicate triangles dropped" },
+      { report->split_edges, "non-manifold edges cut apart" },
+      { report->split_points, "non-manifold points cut apart" },
+      { report->flipped_triangles, "triangles turned to agree with their neighbours" },
+      { report->unorientable_edges, "edges cut because no orientation agrees across them" },
+    };
+    std::string list;
+    for (const auto& repair : repairs)
+    {
+      if (repair.first)
+      {
+        list += (list.empty() ? "" : ", ") + std::to_string(repair.first) + " " + repair.second;
+      }
+    }
+    this->Warnings.clear();
+    if (!list.empty())
+    {
+      this->Warnings.push_back("The input was repaired: " + list + ".");
+    }
+    if (input->GetNumberOfVerts() + input->GetNumberOfLines() > 0)
+    {
+      this->Warnings.push_back(
+        "Vertices and lines of the input were passed over: " + std::to_string(input->GetNumberOfVerts()) + " and " +
+        std::to_string(input->GetNumberOfLines()) + " cells.");
+    }
+    if (report->coarsened_components)
+    {
+      this->Warnings.push_back(std::to_string(report->coarsened_components) +
+                               " components were too small to carry lines at this density and were decimated instead.");
+    }
+    const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher);
+    if (report->target_missed && mesh)
+    {
+      this->Warnings.push_back("The target number of points could not be met within 5 percent: the boundary, the "
+                               "features or the topology of the input ask for another number. The output has " +
+                               std::to_string(mesh->number_of_points) + " points.");
+    }
+  }
+
+  aqr_remesher* Remesher = nullptr;
+  Triangles Surface;
+  vtkSmartPointer<vtkPoints> Points; // kept, so that no other object can take its address
+  vtkMTimeType InputTime = 0;
+  std::vector<double> DensityScale;
+  std::vector<std::string> Warnings;
+};
+
+//------------------------------------------------------------------------------
+vtkAnisotropicQuadRemesher::vtkAnisotropicQuadRemesher()
+  : Internals(new vtkInternals)
+{
+  this->SetNumberOfOutputPorts(4);
+}
+
+//------------------------------------------------------------------------------
+vtkAnisotropicQuadRemesher::~vtkAnisotropicQuadRemesher() = default;
+
+//------------------------------------------------------------------------------
+int vtkAnisotropicQuadRemesher::FillOutputPortInformation(int vtkNotUsed(port), vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAnisotropicQuadRemesher::ReadDensityArray(vtkInformationVector** inputVector, vtkPolyData* input)
+{
+  this->Internals->DensityScale.clear();
+  if (!this->UseDensityArray)
+  {
+    return true;
+  }
+  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  vtkDataArray* scale = this->GetInputArrayToProcess(0, inputVector, association);
+  vtkInformation* asked = this->GetInputArrayInformation(0);
+  const char* name = asked->Get(vtkDataObject::FIELD_NAME());
+  if (!scale)
+  {
+    vtkErrorMacro("The input has no array named \"" << (name ? name : "") << "\" to scale the density by.");
+    return false;
+  }
+  if (association != vtkDataObject::FIELD_ASSOCIATION_POINTS || scale->GetNumberOfComponents() != 1 ||
+      scale->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    vtkErrorMacro("The array \"" << scale->GetName() << "\" cannot scale the density: it must be a point array "
+                                 << "with one component.");
+    return false;
+  }
+  this->Internals->DensityScale.resize(static_cast<size_t>(scale->GetNumberOfTuples()));
+  for (vtkIdType i = 0; i < scale->GetNumberOfTuples(); ++i)
+  {
+    const double value = scale->GetComponent(i, 0);
+    if (!(value > 0.0) || !std::isfinite(value))
+    {
+      vtkErrorMacro("The array \"" << scale->GetName() << "\" cannot scale the density: value " << i << " is " << value
+                                   << ", but all must be finite and greater than zero.");
+      return false;
+    }
+    this->Internals->DensityScale[static_cast<size_t>(i)] = value;
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
+{
+  aqr_options options = aqr_default_options();
+  options.density = this->DensityMode == TOLERANCE ? AQR_DENSITY_TOLERANCE : AQR_DENSITY_POINTS;
+  options.tolerance = this->Tolerance;
+  options.target_points = this->TargetNumberOfPoints;
+  options.density_scale = this->Internals->DensityScale.empty() ? nullptr : this->Internals->DensityScale.data();
+  options.curvature_radius = this->CurvatureRadius;
+  options.smoothing_iterations = this->SmoothingIterations;
+  options.confidence_angle = this->ConfidenceAngle;
+  options.feature_lines = this->FeatureLines;
+  options.feature_angle = this->FeatureAngle;
+  options.boundary_lines = this->BoundaryLines;
+  options.largest_spacing = this->LargestSpacing;
+  options.largest_valence = this->LargestValence;
+  options.convex_partition = this->ConvexPartition;
+  options.preserve_topology = this->PreserveTopology;
+  options.seed = static_cast<uint32_t>(this->Seed);
+
+  vtkInternals& internals = *this->Internals;
+  aqr_status status = AQR_OK;
+  const auto run = [&]
+  {
+    status = internals.SetInput(input);
+    if (status != AQR_OK)
+    {
+      return;
+    }
+    aqr_hooks hooks = {};
+    hooks.user = static_cast<vtkAlgorithm*>(this);
+    hooks.progress = ReportProgress;
+    hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
+    aqr_remesher_set_hooks(internals.Remesher, &hooks);
+    status = aqr_remesher_run(internals.Remesher, &options);
+  };
+  // The backend named here is in every VTK since 9.1, whereas the default one may be sequential.
+  vtkSMPTools::LocalScope(vtkSMPTools::Config{ this->NumberOfThreads, "STDThread", false }, run);
+  return status;
+}
+
+//------------------------------------------------------------------------------
+void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* output)
+{
+  const aqr_mesh* mesh = aqr_remesher_mesh(this->Internals->Remesher);
+  const int precision = input->GetPoints()->GetDataType();
+  output->SetPoints(NewPoints(mesh->points, mesh->number_of_points, precision));
+  output->SetPolys(NewCells(mesh->offsets, mesh->number_of_faces, mesh->connectivity));
+
+  vtkPointData* pointData = output->GetPointData();
+  InterpolatePointData(input->GetPointData(), mesh->origins, mesh->number_of_points, pointData);
+  pointData->SetNormals(NewArray<vtkFloatArray>("Normals", mesh->normals, mesh->number_of_points, 3));
+  pointData->AddArray(NewArray<vtkUnsignedCharArray>("PointKind", mesh->point_kind, mesh->number_of_points));
+
+  const auto sources = SourceCells(this->Internals->Surface, mesh->face_source, mesh->number_of_faces);
+  CopyCellData(input->GetCellData(), sources, output->GetCellData());
+  std::vector<int> sides(mesh->number_of_faces);
+  for (size_t f = 0; f < mesh->number_of_faces; ++f)
+  {
+    sides[f] = static_cast<int>(mesh->offsets[f + 1] - mesh->offsets[f]);
+  }
+  output->GetCellData()->AddArray(NewArray<vtkUnsignedCharArray>("NumberOfSides", sides.data(), sides.size()));
+  output->GetCellData()->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", sources.data(), sources.size()));
+}
+
+//------------------------------------------------------------------------------
+void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* directions, vtkPolyData* confidence)
+{
+  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher);
+  const size_t points = field->number_of_points;
+  const size_t triangles = field->number_of_triangles;
+  std::vector<int64_t> offsets(triangles + 1);
+  for (size_t t = 0; t <= triangles; ++t)
+  {
+    offsets[t] = static_cast<int64_t>(3 * t);
+  }
+  vtkNew<vtkPolyData> surface;
+  surface->SetPoints(NewPoints(field->points, points, input->GetPoints()->GetDataType()));
+  surface->SetPolys(NewCells(offsets.data(), triangles, field->triangles));
+  InterpolatePointData(input->GetPointData(), field->origins, points, surface->GetPointData());
+  const auto sources = SourceCells(this->Internals->Surface, field->triangle_source, triangles);
+  CopyCellData(input->GetCellData(), sources, surface->GetCellData());
+  surface->GetCellData()->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", sources.data(), triangles));
+
+  if (this->GenerateDirections)
+  {
+    directions->ShallowCopy(surface);
+    vtkPointData* data = directions->GetPointData();
+    data->SetNormals(NewArray<vtkFloatArray>("Normals", field->normals, points, 3));
+    data->AddArray(NewArray<vtkFloatArray>("MinDirection", field->min_direction, points, 3));
+    data->AddArray(NewArray<vtkFloatArray>("MaxDirection", field->max_direction, points, 3));
+    data->AddArray(NewArray<vtkDoubleArray>("MinCurvature", field->min_curvature, points));
+    data->AddArray(NewArray<vtkDoubleArray>("MaxCurvature", field->max_curvature, points));
+  }
+  if (this->GenerateConfidence)
+  {
+    confidence->ShallowCopy(surface);
+    confidence->GetPointData()->SetScalars(NewArray<vtkFloatArray>("Confidence", field->point_confidence, points));
+    confidence->GetCellData()->AddArray(NewArray<vtkFloatArray>("Confidence", field->triangle_confidence, triangles));
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* output)
+{
+  const aqr_lines_view* lines = aqr_remesher_lines(this->Internals->Remesher);
+  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher);
+  const size_t points = lines->number_of_points;
+  const size_t count = lines->number_of_lines;
+  std::vector<int64_t> order(std::max(points, count));
+  for (size_t i = 0; i < order.size(); ++i)
+  {
+    order[i] = static_cast<int64_t>(i);
+  }
+  output->SetPoints(NewPoints(lines->points, points, input->GetPoints()->GetDataType()));
+  output->SetLines(NewCells(lines->offsets, count, order.data()));
+
+  vtkPointData* pointData = output->GetPointData();
+  std::vector<vtkIdType> cells(points);
+  for (size_t p = 0; p < points; ++p)
+  {
+    cells[p] = this->Internals->Surface.Cell(field->triangle_source[lines->triangle[p]]);
+  }
+  pointData->AddArray(NewArray<vtkDoubleArray>("Curvature", lines->curvature, points));
+  pointData->AddArray(NewArray<vtkDoubleArray>("ArcLength", lines->arc_length, points));
+  pointData->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", cells.data(), points));
+  pointData->AddArray(NewArray<vtkUnsignedCharArray>("Isotropic", lines->isotropic, points));
+
+  std::vector<uint8_t> reasons[2];
+  for (size_t end = 0; end < 2; ++end)
+  {
+    reasons[end].resize(count);
+    for (size_t i = 0; i < count; ++i)
+    {
+      reasons[end][i] = lines->ends[2 * i + end];
+    }
+  }
+  vtkCellData* cellData = output->GetCellData();
+  cellData->SetScalars(NewArray<vtkUnsignedCharArray>("LineType", lines->type, count));
+  cellData->AddArray(NewArray<vtkIdTypeArray>("LineId", order.data(), count));
+  cellData->AddArray(NewArray<vtkUnsignedCharArray>("StartReason", reasons[0].data(), count));
+  cellData->AddArray(NewArray<vtkUnsignedCharArray>("EndReason", reasons[1].data(), count));
+}
+
+//------------------------------------------------------------------------------
+int vtkAnisotropicQuadRemesher::RequestData(vtkInformation* vtkNotUsed(request),
+  vtkInformationVector** inputVector,
+  vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0], 0);
+  vtkPolyData* outputs[4];
+  for (int port = 0; port < 4; ++port)
+  {
+    outputs[port] = vtkPolyData::GetData(outputVector, port);
+    outputs[port]->Initialize();
+  }
+  vtkInternals& internals = *this->Internals;
+  internals.Warnings.clear();
+  this->SetErrorCode(vtkErrorCode::NoError);
+
+  if (input->GetNumberOfPoints() == 0 || input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
+  {
+    vtkErrorMacro("The input has no polygons to remesh.");
+    this->SetErrorCode(vtkErrorCode::UserError + AQR_EMPTY_INPUT);
+    return 1;
+  }
+  if (!this->ReadDensityArray(inputVector, input))
+  {
+    this->SetErrorCode(vtkErrorCode::UserError + AQR_BAD_OPTION);
+    return 1;
+  }
+  const auto status = static_cast<aqr_status>(this->RunKernels(input));
+  if (status == AQR_CANCELLED)
+  {
+    return 1;
+  }
+  if (status != AQR_OK)
+  {
+    const std::string detail = internals.Remesher ? aqr_remesher_message(internals.Remesher) : "";
+    vtkErrorMacro(<< aqr_status_string(status) << (detail.empty() ? "" : ": ") << detail);
+    this->SetErrorCode(vtkErrorCode::UserError + status);
+    return 1;
+  }
+
+  this->FillRemeshed(input, outputs[REMESHED]);
+  if (this->GenerateDirections || this->GenerateConfidence)
+  {
+    this->FillField(input, outputs[PRINCIPAL_DIRECTIONS], outputs[CONFIDENCE]);
+  }
+  if (this->GenerateLines)
+  {
+    this->FillLines(input, outputs[INTEGRATED_LINES]);
+  }
+  for (vtkPolyData* output : outputs)
+  {
+    output->GetFieldData()->PassData(input->GetFieldData());
+  }
+
+  internals.CollectWarnings(input);
+  if (!internals.Warnings.empty())
+  {
+    std::string all;
+    for (const std::string& warning : internals.Warnings)
+    {
+      all += (all.empty() ? "" : " ") + warning;
+    }
+    vtkWarningMacro(<< all);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAnisotropicQuadRemesher::GetReport() const
+{
+  if (!this->Internals->Remesher)
+  {
+    return "{}";
+  }
+  std::string warnings;
+  for (const std::string& warning : this->Internals->Warnings)
+  {
+    warnings += (warnings.empty() ? "" : ", ") + Quoted(warning);
+  }
+  return "{\"counts\": " + this->Internals->Counts() + ", \"warnings\": [" + warnings +
+         "], \"stages\": " + this->Internals->Stages() + "}";
+}
+
+//------------------------------------------------------------------------------
+void vtkAnisotropicQuadRemesher::PrintSelf(ostream& os, vtkIndent indent)
+{
+  const auto onOff = [](bool value) { return value ? "On\n" : "Off\n"; };
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "DensityMode: " << (this->DensityMode == TOLERANCE ? "Tolerance\n" : "NumberOfPoints\n");
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "TargetNumberOfPoints: " << this->TargetNumberOfPoints << "\n";
+  os << indent << "UseDensityArray: " << onOff(this->UseDensityArray);
+  os << indent << "CurvatureRadius: " << this->CurvatureRadius << "\n";
+  os << indent << "SmoothingIterations: " << this->SmoothingIterations << "\n";
+  os << indent << "ConfidenceAngle: " << this->ConfidenceAngle << "\n";
+  os << indent << "FeatureLines: " << onOff(this->FeatureLines);
+  os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
+  os << indent << "BoundaryLines: " << onOff(this->BoundaryLines);
+  os << indent << "LargestSpacing: " << this->LargestSpacing << "\n";
+  os << indent << "LargestValence: " << this->LargestValence << "\n";
+  os << indent << "ConvexPartition: " << onOff(this->ConvexPartition);
+  os << indent << "PreserveTopology: " << onOff(this->PreserveTopology);
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "GenerateDirections: " << onOff(this->GenerateDirections);
+  os << indent << "GenerateConfidence: " << onOff(this->GenerateConfidence);
+  os << indent << "GenerateLines: " << onOff(this->GenerateLines);
+}
