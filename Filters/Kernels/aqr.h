@@ -182,6 +182,7 @@ extern "C"
     const int64_t* offsets;       /**< number_of_faces + 1 */
     const int64_t* connectivity;  /**< offsets[number_of_faces] point indices, counter-clockwise */
     const aqr_index* face_source; /**< per face: an input triangle below it */
+    size_t number_of_corners;     /**< offsets[number_of_faces] */
   } aqr_mesh;
 
   /** Ports 1 and 2: the cleaned surface with its direction field. */

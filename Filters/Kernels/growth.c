@@ -17,12 +17,8 @@ static const double shortest_step = 0.02;
 static const double query_every = 0.25; /* of the stop distance */
 static const double own_gap = 3;        /* stop distances along the line itself that are never too near */
 
-aqr_status aqr_grower_init(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  aqr_lines* lines,
-  aqr_grower* g)
+aqr_status aqr_grower_init(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
+  aqr_lines* lines, aqr_grower* g)
 {
   memset(g, 0, sizeof *g);
   g->surface = s;
@@ -41,8 +37,8 @@ void aqr_grower_free(aqr_context* c, aqr_grower* g)
   memset(g, 0, sizeof *g);
 }
 
-aqr_status
-aqr_grow_allowed(aqr_context* c, aqr_grower* g, aqr_index face, vec3 p, vec3 direction, double distance, bool* allowed)
+aqr_status aqr_grow_allowed(
+  aqr_context* c, aqr_grower* g, aqr_index face, vec3 p, vec3 direction, double distance, bool* allowed)
 {
   aqr_near near;
   aqr_probe probe = { face, p, direction, distance, true, AQR_NONE, 0, 0 };

@@ -21,17 +21,13 @@ typedef struct aqr_grower
   size_t provisional; /* samples of the growing line held beyond lines->n_samples */
 } aqr_grower;
 
-aqr_status aqr_grower_init(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  aqr_lines* lines,
-  aqr_grower* g);
+aqr_status aqr_grower_init(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
+  aqr_lines* lines, aqr_grower* g);
 void aqr_grower_free(aqr_context* c, aqr_grower* g);
 
 /* Whether a line along `direction` may start at p: no line of its family within `distance`. */
-aqr_status
-aqr_grow_allowed(aqr_context* c, aqr_grower* g, aqr_index face, vec3 p, vec3 direction, double distance, bool* allowed);
+aqr_status aqr_grow_allowed(
+  aqr_context* c, aqr_grower* g, aqr_index face, vec3 p, vec3 direction, double distance, bool* allowed);
 
 /* Grows a line through a place in both directions. */
 aqr_status aqr_grow_inside(aqr_context* c, aqr_grower* g, const aqr_place* at, vec3 direction);

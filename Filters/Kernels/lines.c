@@ -34,12 +34,8 @@ bool aqr_border_before(const aqr_surface* s, aqr_index f, const aqr_sample* a, c
   return !same && (ha == a->edge ? before : !before);
 }
 
-int aqr_chords_cross(const aqr_surface* s,
-  aqr_index f,
-  const aqr_sample* a0,
-  const aqr_sample* a1,
-  const aqr_sample* b0,
-  const aqr_sample* b1)
+int aqr_chords_cross(const aqr_surface* s, aqr_index f, const aqr_sample* a0, const aqr_sample* a1,
+  const aqr_sample* b0, const aqr_sample* b1)
 {
   bool turn = aqr_border_before(s, f, a1, a0); /* then the stretch from a1 to a0 does not wrap */
   const aqr_sample *low = turn ? a1 : a0, *high = turn ? a0 : a1;
@@ -57,11 +53,8 @@ static void enter(aqr_lines* l, aqr_index face, aqr_index sample, aqr_index line
   l->head[face] = (aqr_index)l->n_segments++;
 }
 
-aqr_status aqr_lines_add(aqr_context* c,
-  aqr_lines* l,
-  const aqr_surface* s,
-  const aqr_line* line,
-  const aqr_sample* samples)
+aqr_status aqr_lines_add(
+  aqr_context* c, aqr_lines* l, const aqr_surface* s, const aqr_line* line, const aqr_sample* samples)
 {
   size_t n = line->count;
   if (l->n_samples + n >= AQR_NONE / 2)

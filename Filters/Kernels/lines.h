@@ -53,11 +53,8 @@ aqr_status aqr_lines_init(aqr_context* c, const aqr_surface* s, aqr_lines* l);
 void aqr_lines_free(aqr_context* c, aqr_lines* l);
 
 /* Appends a line with copies of its samples and enters its segments into the faces' lists. */
-aqr_status aqr_lines_add(aqr_context* c,
-  aqr_lines* l,
-  const aqr_surface* s,
-  const aqr_line* line,
-  const aqr_sample* samples);
+aqr_status aqr_lines_add(
+  aqr_context* c, aqr_lines* l, const aqr_surface* s, const aqr_line* line, const aqr_sample* samples);
 
 /* The half-edge of face f that lies on the sample's edge. */
 static inline aqr_index aqr_sample_half_edge(const aqr_surface* s, const aqr_sample* a, aqr_index f)
@@ -77,12 +74,8 @@ bool aqr_border_before(const aqr_surface* s, aqr_index f, const aqr_sample* a, c
 
 /* Whether the chords a0-a1 and b0-b1 of face f cross, by the cyclic order of their ends: 0 no, 1
  * when b runs from the right of a to its left, -1 the other way. */
-int aqr_chords_cross(const aqr_surface* s,
-  aqr_index f,
-  const aqr_sample* a0,
-  const aqr_sample* a1,
-  const aqr_sample* b0,
-  const aqr_sample* b1);
+int aqr_chords_cross(const aqr_surface* s, aqr_index f, const aqr_sample* a0, const aqr_sample* a1,
+  const aqr_sample* b0, const aqr_sample* b1);
 
 /* The name of an edge: the smaller of its half-edges. */
 static inline aqr_index aqr_edge_of(const aqr_surface* s, aqr_index h)

@@ -47,12 +47,8 @@ static aqr_status find_crossings(builder* b)
           continue;
         if (!AQR_RESERVE(b->c, net->crossings, net->crossing_capacity, net->n_crossings + 1))
           return AQR_OUT_OF_MEMORY;
-        net->crossings[net->n_crossings++] = (aqr_crossing){ { p, q },
-          { l->segments[i].line, l->segments[j].line },
-          { AQR_NONE, AQR_NONE },
-          { AQR_NONE, AQR_NONE },
-          (int8_t)turn,
-          true };
+        net->crossings[net->n_crossings++] = (aqr_crossing){ { p, q }, { l->segments[i].line, l->segments[j].line },
+          { AQR_NONE, AQR_NONE }, { AQR_NONE, AQR_NONE }, (int8_t)turn, true };
       }
     }
   }
@@ -417,7 +413,8 @@ static aqr_status sort_stops(builder* b)
     return AQR_OUT_OF_MEMORY;
   for (size_t i = 0; i < n; i++)
     net->stops[i].left = (aqr_index)i; /* where it stood */
-  qsort(net->stops, n, sizeof *net->stops, by_position);
+  if (n)
+    qsort(net->stops, n, sizeof *net->stops, by_position);
   /* two stops at one place: the first serves both */
   size_t kept = 0;
   for (size_t i = 0; i < n; i++)
@@ -834,13 +831,8 @@ done:
   return status;
 }
 
-aqr_status aqr_network_build(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_lines* lines,
-  const aqr_chains* chains,
-  double chain_tolerance,
-  double boundary_tolerance,
-  aqr_network* net)
+aqr_status aqr_network_build(aqr_context* c, const aqr_surface* s, const aqr_lines* lines, const aqr_chains* chains,
+  double chain_tolerance, double boundary_tolerance, aqr_network* net)
 {
   memset(net, 0, sizeof *net);
   builder b = {

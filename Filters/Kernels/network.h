@@ -5,7 +5,7 @@
 #ifndef AQR_NETWORK_H
 #define AQR_NETWORK_H
 
-#include "features.h"
+#include "feature_graph.h"
 #include "lines.h"
 #include "polygon_mesh.h"
 #include "sizing.h"
@@ -48,22 +48,12 @@ typedef struct aqr_network
 } aqr_network;
 
 /* chain_tolerance: chains get nodes of their own until their chords depart from them by no more (scaled units). */
-aqr_status aqr_network_build(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_lines* lines,
-  const aqr_chains* chains,
-  double chain_tolerance,
-  double boundary_tolerance,
-  aqr_network* net);
+aqr_status aqr_network_build(aqr_context* c, const aqr_surface* s, const aqr_lines* lines, const aqr_chains* chains,
+  double chain_tolerance, double boundary_tolerance, aqr_network* net);
 void aqr_network_free(aqr_context* c, aqr_network* net);
 
 /* The polygon mesh with the network's nodes as vertices and its loops as faces. */
-aqr_status aqr_network_mesh(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  const aqr_lines* lines,
-  const aqr_network* net,
-  aqr_polygon_mesh* mesh);
+aqr_status aqr_network_mesh(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
+  const aqr_lines* lines, const aqr_network* net, aqr_polygon_mesh* mesh);
 
 #endif

@@ -40,11 +40,8 @@ static double size_at(const aqr_surface* s, const aqr_sizing* sizing, aqr_index 
   return size;
 }
 
-static aqr_vertex vertex_of_crossing(const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  const aqr_lines* lines,
-  const aqr_crossing* x)
+static aqr_vertex vertex_of_crossing(
+  const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing, const aqr_lines* lines, const aqr_crossing* x)
 {
   const aqr_sample *a = &lines->samples[x->chord[0]], *b = &lines->samples[x->chord[1]];
   vec3 d = v3_sub(a[1].p, a->p), e = v3_sub(b[1].p, b->p);
@@ -57,11 +54,8 @@ static aqr_vertex vertex_of_crossing(const aqr_surface* s,
   return r;
 }
 
-static aqr_vertex vertex_of_stop(const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  const aqr_lines* lines,
-  const aqr_stop* x)
+static aqr_vertex vertex_of_stop(
+  const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing, const aqr_lines* lines, const aqr_stop* x)
 {
   aqr_vertex r = { .out = AQR_NONE };
   bool corner = x->chain == AQR_NONE;
@@ -88,13 +82,8 @@ static aqr_vertex vertex_of_stop(const aqr_surface* s,
   return r;
 }
 
-aqr_status aqr_network_mesh(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  const aqr_lines* lines,
-  const aqr_network* net,
-  aqr_polygon_mesh* mesh)
+aqr_status aqr_network_mesh(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
+  const aqr_lines* lines, const aqr_network* net, aqr_polygon_mesh* mesh)
 {
   aqr_status status = AQR_OK;
   memset(mesh, 0, sizeof *mesh);

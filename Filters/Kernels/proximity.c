@@ -76,11 +76,8 @@ static aqr_status extend(aqr_context* c, aqr_pcell* cell, size_t i)
   return AQR_OK;
 }
 
-aqr_status aqr_pcell_nearest(aqr_context* c,
-  aqr_pcell* cell,
-  const aqr_lines* lines,
-  const aqr_probe* probe,
-  aqr_near* found)
+aqr_status aqr_pcell_nearest(
+  aqr_context* c, aqr_pcell* cell, const aqr_lines* lines, const aqr_probe* probe, aqr_near* found)
 {
   *found = (aqr_near){ AQR_NONE, AQR_NONE, probe->radius };
   aqr_status status = begin(c, cell, probe->face, probe->p, probe->radius);

@@ -41,10 +41,7 @@ typedef struct aqr_probe
 } aqr_probe;
 
 /* The nearest segment of the direction's family (angle below pi/4; paper 4.2) within the radius. */
-aqr_status aqr_pcell_nearest(aqr_context* c,
-  aqr_pcell* cell,
-  const aqr_lines* lines,
-  const aqr_probe* probe,
-  aqr_near* found);
+aqr_status aqr_pcell_nearest(
+  aqr_context* c, aqr_pcell* cell, const aqr_lines* lines, const aqr_probe* probe, aqr_near* found);
 
 #endif

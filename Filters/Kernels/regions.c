@@ -672,13 +672,8 @@ done:
   return status;
 }
 
-aqr_status aqr_regions_cut(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_chains* chains,
-  const aqr_network* net,
-  aqr_lines* lines,
-  uint8_t* is_bare,
-  size_t* added)
+aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, const aqr_network* net,
+  aqr_lines* lines, uint8_t* is_bare, bool cut, size_t* added)
 {
   regions r = { .c = c, .s = s, .chains = chains, .net = net, .lines = lines };
   aqr_status status = AQR_OK;
@@ -697,7 +692,7 @@ aqr_status aqr_regions_cut(aqr_context* c,
   for (aqr_index f = 0; f < s->n_faces; f++)
     is_bare[f] = lines->head[f] == AQR_NONE && !(r.bordered[find(r.parent, f)] & 1);
   bool any = false;
-  for (aqr_index i = 0; i < r.n_items && !any; i++)
+  for (aqr_index i = 0; cut && i < r.n_items && !any; i++)
     any = r.parent[i] == i && needs_cut(&r, i);
   if (any)
   {

@@ -364,7 +364,8 @@ static aqr_status ask_parent(sampler* m, aqr_index parent)
     AQR_TRY(mark(m, 0));
   if (bounded[1] && !line.closed)
     AQR_TRY(mark(m, end));
-  qsort(m->marks, m->n_marks, sizeof *m->marks, by_value);
+  if (m->n_marks)
+    qsort(m->marks, m->n_marks, sizeof *m->marks, by_value);
   size_t n = m->n_marks;
   if (line.closed && n)
     AQR_TRY(mark(m, m->marks[0] + end)); /* around the seam of the loop */
@@ -549,14 +550,8 @@ done:
   return status;
 }
 
-aqr_status aqr_sample_lines(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  const aqr_chains* chains,
-  const aqr_sampling_options* options,
-  aqr_lines* lines,
-  aqr_report* report)
+aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
+  const aqr_chains* chains, const aqr_sampling_options* options, aqr_lines* lines, aqr_report* report)
 {
   sampler m = {
     .c = c, .s = s, .field = field, .sizing = sizing, .options = options, .lines = lines, .n_chains = chains->n_chains

@@ -3,7 +3,7 @@
 #ifndef AQR_SAMPLING_H
 #define AQR_SAMPLING_H
 
-#include "features.h"
+#include "feature_graph.h"
 #include "lines.h"
 #include "sizing.h"
 
@@ -17,13 +17,7 @@ typedef struct aqr_sampling_options
 } aqr_sampling_options;
 
 /* Fills `lines` (initialised here) with the chains first, then the curvature lines. */
-aqr_status aqr_sample_lines(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  const aqr_chains* chains,
-  const aqr_sampling_options* options,
-  aqr_lines* lines,
-  aqr_report* report);
+aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
+  const aqr_chains* chains, const aqr_sampling_options* options, aqr_lines* lines, aqr_report* report);
 
 #endif

@@ -131,13 +131,8 @@ aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points,
   return aqr_sizing_set(c, s, *tolerance, sizing);
 }
 
-void aqr_sizing_at(const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  aqr_index face,
-  vec3 d,
-  double* along,
-  double* across)
+void aqr_sizing_at(const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing, aqr_index face, vec3 d,
+  double* along, double* across)
 {
   double a[2] = { 0, 0 };
   for (unsigned i = 0; i < 3; i++)
@@ -152,12 +147,8 @@ void aqr_sizing_at(const aqr_surface* s,
   *across = a[1] / 3;
 }
 
-aqr_status aqr_sizing_build(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const double* density,
-  double largest_spacing,
-  aqr_sizing* sizing)
+aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_field* field, const double* density,
+  double largest_spacing, aqr_sizing* sizing)
 {
   memset(sizing, 0, sizeof *sizing);
   sizing->n_points = s->n_points;

@@ -17,12 +17,8 @@ typedef struct aqr_sizing
 } aqr_sizing;
 
 /* density: NULL or one factor per INPUT point on points per area. */
-aqr_status aqr_sizing_build(aqr_context* c,
-  const aqr_surface* s,
-  const aqr_field* field,
-  const double* density,
-  double largest_spacing,
-  aqr_sizing* sizing);
+aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_field* field, const double* density,
+  double largest_spacing, aqr_sizing* sizing);
 void aqr_sizing_free(aqr_context* c, aqr_sizing* sizing);
 
 /* Fills `spacing` for a tolerance (in scaled units). */
@@ -37,12 +33,7 @@ aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points,
 
 /* Spacing of neighbouring lines along direction d at a face: *along, of the lines that cross one
  * that runs along d, and *across, of the lines beside it. */
-void aqr_sizing_at(const aqr_surface* s,
-  const aqr_field* field,
-  const aqr_sizing* sizing,
-  aqr_index face,
-  vec3 d,
-  double* along,
-  double* across);
+void aqr_sizing_at(const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing, aqr_index face, vec3 d,
+  double* along, double* across);
 
 #endif

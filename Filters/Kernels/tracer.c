@@ -92,12 +92,8 @@ static void lay(const aqr_tracer* t, aqr_index f, unsigned k, aqr_complex at, aq
   {
     size_t v = s->corner[3 * f + i];
     unsigned j = (i + 1) % 3, h = (i + 2) % 3;
-    chart->cross[i] = cx_fourth(flatten(v3_load(t->normal + 3 * v),
-      v3_load(t->cross + 3 * v),
-      e[i],
-      v3_scale(e[h], -1),
-      cx_sub(chart->q[j], chart->q[i]),
-      cx_sub(chart->q[h], chart->q[i])));
+    chart->cross[i] = cx_fourth(flatten(v3_load(t->normal + 3 * v), v3_load(t->cross + 3 * v), e[i], v3_scale(e[h], -1),
+      cx_sub(chart->q[j], chart->q[i]), cx_sub(chart->q[h], chart->q[i])));
   }
   chart->coherent = cx_dot(chart->cross[0], chart->cross[1]) > 0 && cx_dot(chart->cross[1], chart->cross[2]) > 0 &&
                     cx_dot(chart->cross[2], chart->cross[0]) > 0;
@@ -252,12 +248,8 @@ static aqr_status record(aqr_context* c, aqr_tracer* t, aqr_index h, double at, 
 /* Passes exactly through corner k of the chart's face (paper 3.1, case 3): the samples go around
  * the vertex on the shorter side, and the new face is turned so that the direction keeps its
  * coordinates. */
-static aqr_status pass_vertex(aqr_context* c,
-  aqr_tracer* t,
-  unsigned k,
-  aqr_complex d,
-  bool recording,
-  aqr_advance* result)
+static aqr_status pass_vertex(
+  aqr_context* c, aqr_tracer* t, unsigned k, aqr_complex d, bool recording, aqr_advance* result)
 {
   const aqr_surface* s = t->surface;
   aqr_index arrival = 3 * t->chart.face + k, exit;
@@ -396,12 +388,8 @@ static aqr_status predict(aqr_context* c, aqr_tracer* t, aqr_complex d, double l
   return status;
 }
 
-aqr_status aqr_tracer_step(aqr_context* c,
-  aqr_tracer* t,
-  double* step,
-  double shortest,
-  double longest,
-  aqr_advance* result)
+aqr_status aqr_tracer_step(
+  aqr_context* c, aqr_tracer* t, double* step, double shortest, double longest, aqr_advance* result)
 {
   double h = fmin(fmax(*step, shortest), longest);
   aqr_status status = AQR_OK;

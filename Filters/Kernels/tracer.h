@@ -58,12 +58,8 @@ aqr_status aqr_tracer_straight(aqr_context* c, aqr_tracer* t, double length, aqr
 /* One Runge-Kutta step of the field line; *step is shortened until the estimated turn error is
  * below a fixed angle, and set to what the next step should try, within [shortest, longest]. Goes
  * straight where the field is not coherent. */
-aqr_status aqr_tracer_step(aqr_context* c,
-  aqr_tracer* t,
-  double* step,
-  double shortest,
-  double longest,
-  aqr_advance* result);
+aqr_status aqr_tracer_step(
+  aqr_context* c, aqr_tracer* t, double* step, double shortest, double longest, aqr_advance* result);
 
 vec3 aqr_tracer_position(const aqr_tracer* t);
 vec3 aqr_tracer_direction(const aqr_tracer* t);

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The stages behind aqr_remesher and the results they leave. */
+#ifndef AQR_PIPELINE_H
+#define AQR_PIPELINE_H
+
+#include "feature_graph.h"
+#include "field.h"
+#include "lines.h"
+#include "polygon_mesh.h"
+#include "sizing.h"
+
+enum aqr_stage_id
+{
+  AQR_STAGE_SURFACE,
+  AQR_STAGE_FEATURES,
+  AQR_STAGE_CURVATURE,
+  AQR_STAGE_FIELD,
+  AQR_STAGE_SIZING,
+  AQR_STAGE_LINES,
+  AQR_STAGE_NETWORK,
+  AQR_STAGE_FACES,
+  AQR_STAGE_FIT,
+  AQR_STAGE_RESULT,
+  AQR_STAGES
+};
+
+struct aqr_remesher
+{
+  aqr_context context;
+  aqr_report report;
+  aqr_report surface_report; /* what cleaning found: part of every run's report */
+  aqr_stage stages[AQR_STAGES];
+  int valid; /* stages up to this one hold results for `done`; -1: none */
+  aqr_options done;
+  uint64_t done_density; /* fingerprint of the density array */
+  size_t n_input_points;
+  aqr_surface base;     /* cleaned */
+  aqr_surface cut;      /* cut open along creases, when there are any */
+  aqr_surface* surface; /* the one in use */
+  aqr_chains chains;
+  aqr_tensors tensors;
+  aqr_field field;
+  aqr_sizing sizing;
+  aqr_lines lines;
+  aqr_polygon_mesh polygons;
+  aqr_mesh mesh;
+  aqr_field_view field_view;
+  aqr_lines_view lines_view;
+  bool has_result;
+};
+
+/* Fill and release the views (results.c). */
+aqr_status aqr_results_mesh(aqr_remesher* r);
+aqr_status aqr_results_field(aqr_remesher* r);
+aqr_status aqr_results_lines(aqr_remesher* r);
+void aqr_results_free_mesh(aqr_remesher* r);
+void aqr_results_free_field(aqr_remesher* r);
+void aqr_results_free_lines(aqr_remesher* r);
+
+#endif

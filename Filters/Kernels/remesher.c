@@ -1,0 +1,581 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The pipeline: surface -> features -> curvature -> direction field -> sizing -> lines -> network -> faces -> fit. */
+#include "coarsen.h"
+#include "faces.h"
+#include "fit.h"
+#include "network.h"
+#include "pipeline.h"
+#include "regions.h"
+#include "sampling.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+enum
+{
+  cookie = 0x41515231,
+  most_attempts = 6, /* at meeting a target number of points */
+  most_cuts = 24     /* rounds of arcs that keep the topology */
+};
+
+static const double longest_edge = 0.025; /* edges longer than this are halved (paper 3.2): half the default spacing */
+static const double corner_angle = 45;    /* a chain turning more sharply has a corner there */
+static const double shortest_feature = 0.02;
+static const double target_accuracy = 0.02;
+static const double missed_accuracy = 0.05;
+
+static const char* const stage_names[AQR_STAGES] = { "surface", "features", "curvature", "direction field", "spacing",
+  "lines", "network", "faces", "fit", "results" };
+/* where each stage ends in the overall progress */
+static const double stage_ends[AQR_STAGES] = { 0.05, 0.08, 0.3, 0.4, 0.42, 0.75, 0.85, 0.92, 0.98, 1 };
+
+const char* aqr_status_string(aqr_status status)
+{
+  switch (status)
+  {
+    case AQR_OK:
+      return "no failure";
+    case AQR_CANCELLED:
+      return "cancelled by the caller";
+    case AQR_OUT_OF_MEMORY:
+      return "out of memory";
+    case AQR_EMPTY_INPUT:
+      return "the input has no points or no triangles";
+    case AQR_NON_FINITE_POINT:
+      return "a point of the input is not finite";
+    case AQR_INDEX_OUT_OF_RANGE:
+      return "a triangle of the input names a point that does not exist";
+    case AQR_DEGENERATE_INPUT:
+      return "the input has no triangle of positive area";
+    case AQR_TOO_LARGE:
+      return "the input is too large for the index type";
+    case AQR_BAD_OPTION:
+      return "an option is outside its range";
+    case AQR_NO_INPUT:
+      return "no input was set";
+    case AQR_INTERNAL:
+      return "an internal invariant did not hold";
+  }
+  return "unknown status";
+}
+
+aqr_options aqr_default_options(void)
+{
+  return (aqr_options){ .cookie = cookie,
+    .density = AQR_DENSITY_TOLERANCE,
+    .tolerance = 0.0005,
+    .target_points = 5000,
+    .curvature_radius = 0.01,
+    .smoothing_iterations = 5,
+    .confidence_angle = 30,
+    .feature_lines = 1,
+    .feature_angle = 40,
+    .boundary_lines = 1,
+    .largest_spacing = 0.05,
+    .largest_valence = 5,
+    .convex_partition = 1,
+    .preserve_topology = 1 };
+}
+
+aqr_status aqr_remesher_new(const aqr_hooks* hooks, aqr_remesher** remesher)
+{
+  aqr_context c = { 0 };
+  if (hooks)
+    c.hooks = *hooks;
+  *remesher = AQR_NEW0(&c, aqr_remesher, 1);
+  if (!*remesher)
+    return AQR_OUT_OF_MEMORY;
+  (*remesher)->context = c;
+  (*remesher)->valid = -1;
+  return AQR_OK;
+}
+
+/* Drops what stages from `first` on hold. */
+static void drop_from(aqr_remesher* r, int first)
+{
+  aqr_context* c = &r->context;
+  r->has_result = false;
+  if (r->valid >= first)
+    r->valid = first - 1;
+  aqr_results_free_mesh(r);
+  aqr_results_free_lines(r);
+  if (first <= AQR_STAGE_FIELD)
+    aqr_results_free_field(r);
+  if (first <= AQR_STAGE_FACES)
+    aqr_polygon_mesh_free(c, &r->polygons);
+  if (first <= AQR_STAGE_LINES)
+    aqr_lines_free(c, &r->lines);
+  if (first <= AQR_STAGE_SIZING)
+    aqr_sizing_free(c, &r->sizing);
+  if (first <= AQR_STAGE_FIELD && r->surface)
+    aqr_field_free(c, r->surface, &r->field);
+  if (first <= AQR_STAGE_CURVATURE && r->surface)
+    aqr_tensors_free(c, r->surface, &r->tensors);
+  if (first <= AQR_STAGE_FEATURES)
+  {
+    aqr_chains_free(c, &r->chains);
+    if (r->surface == &r->cut)
+      aqr_surface_free(c, &r->cut);
+    r->surface = NULL;
+  }
+  if (first <= AQR_STAGE_SURFACE)
+  {
+    aqr_surface_free(c, &r->base);
+    memset(&r->surface_report, 0, sizeof r->surface_report);
+  }
+}
+
+void aqr_remesher_free(aqr_remesher* remesher)
+{
+  if (!remesher)
+    return;
+  drop_from(remesher, AQR_STAGE_SURFACE);
+  aqr_context c = remesher->context;
+  AQR_DROP(&c, remesher, 1);
+}
+
+void aqr_remesher_set_hooks(aqr_remesher* remesher, const aqr_hooks* hooks)
+{
+  aqr_hooks h = { 0 };
+  if (hooks)
+    h = *hooks;
+  /* what was allocated by one allocator must be released by it, with the user data it was given */
+  if (remesher->context.hooks.reallocate)
+  {
+    h.reallocate = remesher->context.hooks.reallocate;
+    h.user = remesher->context.hooks.user;
+  }
+  else
+    h.reallocate = NULL;
+  remesher->context.hooks = h;
+}
+
+/* ---- stages ---- */
+
+static double now(void)
+{
+  struct timespec t;
+  return timespec_get(&t, TIME_UTC) ? (double)t.tv_sec + 1e-9 * (double)t.tv_nsec : 0;
+}
+
+static double begin_stage(aqr_remesher* r, int stage)
+{
+  aqr_context* c = &r->context;
+  c->stage = stage_names[stage];
+  c->begin = stage ? stage_ends[stage - 1] : 0;
+  c->end = stage_ends[stage];
+  c->peak_bytes = c->bytes;
+  return now();
+}
+
+static void end_stage(aqr_remesher* r, int stage, double began)
+{
+  aqr_stage* s = &r->stages[stage];
+  s->seconds += now() - began;
+  s->end_bytes = r->context.bytes;
+  if (r->context.peak_bytes > s->peak_bytes)
+    s->peak_bytes = r->context.peak_bytes;
+}
+
+static void forget_stages(aqr_remesher* r, int first)
+{
+  for (int i = first; i < AQR_STAGES; i++)
+    r->stages[i] = (aqr_stage){ .name = stage_names[i] };
+}
+
+aqr_status aqr_remesher_set_input(aqr_remesher* r, const aqr_input* input)
+{
+  drop_from(r, AQR_STAGE_SURFACE);
+  forget_stages(r, 0);
+  r->context.last = 0;
+  r->context.message[0] = '\0';
+  r->n_input_points = input->number_of_points;
+  double began = begin_stage(r, AQR_STAGE_SURFACE);
+  aqr_status status = aqr_surface_build(&r->context, input, longest_edge, &r->base, &r->surface_report);
+  r->report = r->surface_report;
+  if (status == AQR_OK)
+    r->valid = AQR_STAGE_SURFACE;
+  end_stage(r, AQR_STAGE_SURFACE, began);
+  return status;
+}
+
+static aqr_status run_features(aqr_remesher* r, const aqr_options* o)
+{
+  aqr_context* c = &r->context;
+  aqr_status status = AQR_OK;
+  size_t n = 3 * r->base.n_faces;
+  uint8_t* crease = AQR_NEW0(c, uint8_t, n);
+  AQR_REQUIRE(crease, AQR_OUT_OF_MEMORY);
+  if (o->feature_lines)
+    AQR_TRY(aqr_features_detect(c, &r->base, o->feature_angle, shortest_feature, crease, &r->report));
+  r->surface_report.feature_edges = r->report.feature_edges;
+  bool any = memchr(crease, 1, n) != NULL;
+  if (any)
+  {
+    AQR_TRY(aqr_surface_copy(c, &r->base, &r->cut));
+    r->surface = &r->cut;
+    AQR_TRY(aqr_surface_cut(c, &r->cut, crease));
+  }
+  r->surface = any ? &r->cut : &r->base;
+  AQR_TRY(aqr_chains_build(c, r->surface, corner_angle, &r->chains));
+done:
+  AQR_DROP(c, crease, n);
+  return status;
+}
+
+static double cosine(double degrees)
+{
+  return cos(degrees * 0.017453292519943295);
+}
+
+static size_t count_vertices(const aqr_polygon_mesh* m)
+{
+  size_t n = 0;
+  for (size_t v = 0; v < m->n_vertices; v++)
+    n += m->vertices[v].out != AQR_NONE;
+  return n;
+}
+
+/* Decimates components that carry no lines and adds them to the mesh. */
+static aqr_status add_bare_components(aqr_remesher* r, const uint8_t* is_bare)
+{
+  aqr_context* c = &r->context;
+  const aqr_surface* s = r->surface;
+  aqr_status status = AQR_OK;
+  if (!memchr(is_bare, 1, s->n_faces))
+    return AQR_OK;
+  uint8_t* seen = AQR_NEW0(c, uint8_t, s->n_faces);
+  aqr_index* faces = AQR_NEW(c, aqr_index, s->n_faces);
+  AQR_REQUIRE(seen && faces, AQR_OUT_OF_MEMORY);
+  for (aqr_index f = 0; f < s->n_faces; f++)
+  {
+    if (!is_bare[f] || seen[f])
+      continue;
+    size_t n = 0;
+    double area = 0, size = r->sizing.largest;
+    seen[f] = 1;
+    faces[n++] = f;
+    for (size_t i = 0; i < n; i++)
+    {
+      area += v3_norm(aqr_face_cross(s, faces[i])) / 2;
+      for (unsigned k = 0; k < 3; k++)
+      {
+        const float* d = r->sizing.spacing + 2 * (size_t)s->corner[3 * faces[i] + k];
+        size = fmin(size, fmin((double)d[0], (double)d[1]));
+        aqr_index t = aqr_twin(s, 3 * faces[i] + k);
+        if (t != AQR_NONE && !seen[aqr_face_of(t)])
+        {
+          seen[aqr_face_of(t)] = 1;
+          faces[n++] = aqr_face_of(t);
+        }
+      }
+    }
+    size_t points = (size_t)fmin((double)n, fmax(8, area / (size * size)));
+    AQR_TRY(aqr_coarsen_component(c, s, &r->field, faces, n, points, &r->polygons));
+    r->report.coarsened_components++;
+  }
+done:
+  AQR_DROP(c, seen, s->n_faces);
+  AQR_DROP(c, faces, s->n_faces);
+  return status;
+}
+
+/* Lines to polygons, with regions that are not disks cut until none is left. */
+static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tolerance)
+{
+  aqr_context* c = &r->context;
+  aqr_network net = { 0 };
+  aqr_status status = AQR_OK;
+  uint8_t* is_bare = AQR_NEW0(c, uint8_t, r->surface->n_faces);
+  AQR_REQUIRE(is_bare, AQR_OUT_OF_MEMORY);
+  for (int i = 0; i < most_cuts; i++)
+  {
+    size_t added = 0;
+    aqr_network_free(c, &net);
+    AQR_TRY(aqr_network_build(
+      c, r->surface, &r->lines, &r->chains, tolerance, o->boundary_lines ? tolerance : 8 * tolerance, &net));
+    AQR_TRY(aqr_regions_cut(c, r->surface, &r->chains, &net, &r->lines, is_bare, o->preserve_topology, &added));
+    r->report.topology_cuts += added;
+    if (!added)
+      break;
+  }
+  AQR_TRY(aqr_network_mesh(c, r->surface, &r->field, &r->sizing, &r->lines, &net, &r->polygons));
+  AQR_TRY(add_bare_components(r, is_bare));
+done:
+  aqr_network_free(c, &net);
+  AQR_DROP(c, is_bare, r->surface->n_faces);
+  return status;
+}
+
+/* Lines, network and faces for one tolerance. */
+static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double tolerance)
+{
+  aqr_context* c = &r->context;
+  aqr_status status = AQR_OK;
+  aqr_polygon_mesh_free(c, &r->polygons);
+  aqr_lines_free(c, &r->lines);
+  r->report.tolerance = tolerance;
+  r->report.topology_cuts = r->report.coarsened_components = 0;
+  double began = begin_stage(r, AQR_STAGE_LINES);
+  aqr_sampling_options sampling = { cosine(o->confidence_angle), tolerance, o->boundary_lines != 0, o->seed };
+  status = aqr_sample_lines(c, r->surface, &r->field, &r->sizing, &r->chains, &sampling, &r->lines, &r->report);
+  end_stage(r, AQR_STAGE_LINES, began);
+  if (status != AQR_OK)
+    return status;
+  began = begin_stage(r, AQR_STAGE_NETWORK);
+  status = run_network(r, o, tolerance);
+  end_stage(r, AQR_STAGE_NETWORK, began);
+  if (status != AQR_OK)
+    return status;
+  began = begin_stage(r, AQR_STAGE_FACES);
+  aqr_faces_options faces = { o->convex_partition != 0, o->largest_valence };
+  status = aqr_faces_finish(c, &r->polygons, &faces);
+  end_stage(r, AQR_STAGE_FACES, began);
+  return status;
+}
+
+/* Searches the tolerance that gives the target: the prediction asked for is corrected by what came out, first in
+ * proportion, then by the chord through the two attempts nearest to the target on a logarithmic scale. */
+static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
+{
+  double goal = log((double)o->target_points), ask = goal, x[2] = { 0, 0 }, y[2] = { 0, 0 };
+  double best_error = INFINITY, best_ask = goal;
+  int known = 0;
+  for (int i = 0; i < most_attempts; i++)
+  {
+    double tolerance;
+    aqr_status status = aqr_sizing_solve(&r->context, r->surface, exp(ask), &r->sizing, &tolerance);
+    if (status == AQR_OK)
+      status = attempt(r, o, tolerance);
+    if (status != AQR_OK)
+      return status;
+    double made = log(fmax(1, (double)count_vertices(&r->polygons))), error = fabs(made - goal);
+    if (error < best_error)
+    {
+      best_error = error;
+      best_ask = ask;
+    }
+    if (error < target_accuracy)
+      break;
+    /* keep the two attempts nearest to the goal */
+    int slot = known < 2 ? known++ : fabs(y[0] - goal) > fabs(y[1] - goal) ? 0 : 1;
+    x[slot] = ask;
+    y[slot] = made;
+    double slope = known == 2 && fabs(x[1] - x[0]) > 1e-9 ? (y[1] - y[0]) / (x[1] - x[0]) : 1;
+    ask += (goal - made) / fmin(2, fmax(0.25, slope));
+    if (i + 2 == most_attempts)
+      ask = best_ask; /* the last attempt repeats the best */
+    if (i + 2 == most_attempts && best_error >= error)
+      break;
+  }
+  r->report.target_missed = best_error > missed_accuracy;
+  return AQR_OK;
+}
+
+/* ---- options and reuse ---- */
+
+static aqr_status check(aqr_remesher* r, const char* name, double value, double low, double high)
+{
+  if (value >= low && value <= high)
+    return AQR_OK;
+  snprintf(r->context.message, sizeof r->context.message, "%s is %g, outside [%g, %g]", name, value, low, high);
+  return AQR_BAD_OPTION;
+}
+
+static aqr_status check_options(aqr_remesher* r, const aqr_options* o)
+{
+  const struct
+  {
+    const char* name;
+    double value, low, high;
+  } ranges[] = {
+    { "cookie (use aqr_default_options)", o->cookie, cookie, cookie },
+    { "density", (double)o->density, AQR_DENSITY_TOLERANCE, AQR_DENSITY_POINTS },
+    { "tolerance", o->tolerance, 1e-7, 0.1 },
+    { "target_points", (double)o->target_points, 4, 2147483647.0 },
+    { "curvature_radius", o->curvature_radius, 0, 0.2 },
+    { "smoothing_iterations", o->smoothing_iterations, 0, 1000 },
+    { "confidence_angle", o->confidence_angle, 0, 90 },
+    { "feature_angle", o->feature_angle, 1e-6, 180 },
+    { "largest_spacing", o->largest_spacing, 1e-4, 1 },
+    { "largest_valence", o->largest_valence, 4, 64 },
+  };
+  for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+  {
+    aqr_status status = check(r, ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high);
+    if (status != AQR_OK)
+      return status;
+  }
+  for (size_t i = 0; o->density_scale && i < r->n_input_points; i++)
+    if (!(o->density_scale[i] > 0) || !isfinite(o->density_scale[i]))
+    {
+      snprintf(r->context.message, sizeof r->context.message, "density_scale[%zu] is %g, not a finite factor above 0",
+        i, o->density_scale[i]);
+      return AQR_BAD_OPTION;
+    }
+  return AQR_OK;
+}
+
+static uint64_t fingerprint(const double* a, size_t n)
+{
+  uint64_t h = 0xcbf29ce484222325u;
+  for (size_t i = 0; a && i < n; i++)
+  {
+    uint64_t bits;
+    memcpy(&bits, &a[i], sizeof bits);
+    h = (h ^ bits) * 0x100000001b3u;
+  }
+  return a ? h : 0;
+}
+
+static bool differ(double a, double b)
+{
+  return a < b || a > b;
+}
+
+/* The first stage that reads an option which changed. */
+static int first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t density)
+{
+  const aqr_options* d = &r->done;
+  if (o->feature_lines != d->feature_lines || differ(o->feature_angle, d->feature_angle))
+    return AQR_STAGE_FEATURES;
+  if (differ(o->curvature_radius, d->curvature_radius))
+    return AQR_STAGE_CURVATURE;
+  if (o->smoothing_iterations != d->smoothing_iterations || differ(o->confidence_angle, d->confidence_angle))
+    return AQR_STAGE_FIELD;
+  if (density != r->done_density || differ(o->largest_spacing, d->largest_spacing))
+    return AQR_STAGE_SIZING;
+  return AQR_STAGE_LINES;
+}
+
+/* Runs one stage that leaves a cached result, unless its result is still there. */
+static aqr_status run_cached(
+  aqr_remesher* r, int stage, const aqr_options* o, aqr_status (*run)(aqr_remesher*, const aqr_options*))
+{
+  if (r->valid >= stage)
+  {
+    r->stages[stage].reused = 1;
+    r->stages[stage].seconds = 0;
+    return AQR_OK;
+  }
+  double began = begin_stage(r, stage);
+  aqr_status status = run(r, o);
+  end_stage(r, stage, began);
+  if (status == AQR_OK)
+    r->valid = stage;
+  return status;
+}
+
+static aqr_status run_curvature(aqr_remesher* r, const aqr_options* o)
+{
+  return aqr_curvature_tensors(&r->context, r->surface, o->curvature_radius, &r->tensors);
+}
+
+static aqr_status run_field(aqr_remesher* r, const aqr_options* o)
+{
+  return aqr_direction_field(
+    &r->context, r->surface, &r->tensors, o->smoothing_iterations, cosine(o->confidence_angle), &r->field);
+}
+
+static aqr_status run_sizing(aqr_remesher* r, const aqr_options* o)
+{
+  return aqr_sizing_build(&r->context, r->surface, &r->field, o->density_scale, o->largest_spacing, &r->sizing);
+}
+
+static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
+{
+  if (o->density == AQR_DENSITY_POINTS)
+    return meet_target(r, o);
+  aqr_status status = aqr_sizing_set(&r->context, r->surface, o->tolerance, &r->sizing);
+  return status == AQR_OK ? attempt(r, o, o->tolerance) : status;
+}
+
+static aqr_status run_results(aqr_remesher* r)
+{
+  aqr_status status = AQR_OK;
+  AQR_TRY(aqr_results_mesh(r));
+  AQR_TRY(aqr_results_lines(r));
+  if (!r->field_view.points)
+    AQR_TRY(aqr_results_field(r));
+done:
+  return status;
+}
+
+static aqr_status run_stages(aqr_remesher* r, const aqr_options* o)
+{
+  aqr_status status = AQR_OK;
+  AQR_TRY(run_cached(r, AQR_STAGE_FEATURES, o, run_features));
+  AQR_TRY(run_cached(r, AQR_STAGE_CURVATURE, o, run_curvature));
+  AQR_TRY(run_cached(r, AQR_STAGE_FIELD, o, run_field));
+  AQR_TRY(run_cached(r, AQR_STAGE_SIZING, o, run_sizing));
+  AQR_TRY(run_lines(r, o));
+  double began = begin_stage(r, AQR_STAGE_FIT);
+  AQR_TRY(aqr_fit(&r->context, r->surface, &r->polygons));
+  end_stage(r, AQR_STAGE_FIT, began);
+  began = begin_stage(r, AQR_STAGE_RESULT);
+  AQR_TRY(run_results(r));
+  end_stage(r, AQR_STAGE_RESULT, began);
+done:
+  return status;
+}
+
+aqr_status aqr_remesher_run(aqr_remesher* r, const aqr_options* options)
+{
+  r->context.message[0] = '\0';
+  r->context.last = 0;
+  r->has_result = false;
+  if (r->valid < AQR_STAGE_SURFACE)
+    return AQR_NO_INPUT;
+  aqr_status status = check_options(r, options);
+  if (status != AQR_OK)
+    return status;
+  uint64_t density = fingerprint(options->density_scale, r->n_input_points);
+  int first = r->valid > AQR_STAGE_SURFACE ? first_changed(r, options, density) : AQR_STAGE_FEATURES;
+  drop_from(r, first < r->valid + 1 ? first : r->valid + 1);
+  forget_stages(r, AQR_STAGE_FEATURES);
+  r->report = r->surface_report;
+  r->done = *options;
+  r->done.density_scale = NULL;
+  r->done_density = density;
+  status = run_stages(r, options);
+  if (status != AQR_OK)
+    drop_from(r, r->valid + 1);
+  r->has_result = status == AQR_OK;
+  if (r->has_result)
+    aqr_step(&r->context, 1);
+  return status;
+}
+
+/* ---- results ---- */
+
+const aqr_mesh* aqr_remesher_mesh(const aqr_remesher* r)
+{
+  return r->has_result ? &r->mesh : NULL;
+}
+
+const aqr_field_view* aqr_remesher_field(const aqr_remesher* r)
+{
+  return r->has_result ? &r->field_view : NULL;
+}
+
+const aqr_lines_view* aqr_remesher_lines(const aqr_remesher* r)
+{
+  return r->has_result ? &r->lines_view : NULL;
+}
+
+const aqr_report* aqr_remesher_report(const aqr_remesher* r)
+{
+  return &r->report;
+}
+
+const aqr_stage* aqr_remesher_stages(const aqr_remesher* r, size_t* count)
+{
+  *count = AQR_STAGES;
+  return r->stages;
+}
+
+const char* aqr_remesher_message(const aqr_remesher* r)
+{
+  return r->context.message;
+}

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* From the scaled working surface back to the caller's coordinates and indices. */
+#include "pipeline.h"
+
+#include <string.h>
+
+/* The views are read-only for callers; here their arrays are filled and released. */
+#define WRITABLE(type, p) ((type*)(uintptr_t)(p))
+#define DROP_VIEW(c, type, p, count) (aqr_release(c, WRITABLE(type, p), count, sizeof(type)), (p) = NULL)
+
+static void unscale(const aqr_surface* s, vec3 p, double* out)
+{
+  v3_store(out, v3_madd(s->centre, s->diagonal, p));
+}
+
+/* Weights over input points of a place on the working surface: all its corners lie on one input triangle, so that three
+ * points suffice. */
+static aqr_origin origin_of(const aqr_surface* s, const aqr_place* at)
+{
+  aqr_index point[9];
+  double weight[9], sum = 0;
+  unsigned n = 0;
+  for (unsigned k = 0; k < 3; k++)
+  {
+    const aqr_origin* o = &s->origin[s->clean[s->corner[3 * at->face + k]]];
+    for (unsigned i = 0; i < 3; i++)
+    {
+      double w = at->bary[k] * (double)o->weight[i];
+      unsigned j = 0;
+      while (j < n && point[j] != o->point[i])
+        j++;
+      if (j == n)
+      {
+        point[n] = o->point[i];
+        weight[n++] = 0;
+      }
+      weight[j] += w;
+    }
+  }
+  aqr_origin r = { { point[0], point[0], point[0] }, { 0, 0, 0 }, s->source[at->face] };
+  for (unsigned i = 0; i < 3 && n; i++)
+  {
+    unsigned best = 0;
+    for (unsigned j = 1; j < n; j++)
+      if (weight[j] > weight[best])
+        best = j;
+    r.point[i] = point[best];
+    r.weight[i] = (float)weight[best];
+    sum += weight[best];
+    n--;
+    point[best] = point[n];
+    weight[best] = weight[n];
+  }
+  for (unsigned i = 0; i < 3; i++)
+    r.weight[i] = sum > 0 ? (float)((double)r.weight[i] / sum) : (i == 0);
+  return r;
+}
+
+aqr_status aqr_results_mesh(aqr_remesher* r)
+{
+  aqr_context* c = &r->context;
+  const aqr_polygon_mesh* m = &r->polygons;
+  aqr_status status = AQR_OK;
+  aqr_mesh* out = &r->mesh;
+  aqr_results_free_mesh(r);
+  size_t n_points = 0, n_faces = 0, n_corners = 0;
+  aqr_index* id = AQR_NEW(c, aqr_index, m->n_vertices);
+  AQR_REQUIRE(id, AQR_OUT_OF_MEMORY);
+  for (size_t v = 0; v < m->n_vertices; v++)
+    id[v] = m->vertices[v].out == AQR_NONE ? AQR_NONE : (aqr_index)n_points++;
+  for (size_t h = 0; h < m->n_half_edges; h++)
+    n_corners += m->half_edges[h].from != AQR_NONE && m->half_edges[h].face != AQR_NONE;
+  for (size_t f = 0; f < m->n_faces; f++)
+    n_faces += m->faces[f] != AQR_NONE;
+  double* points = AQR_NEW(c, double, 3 * n_points);
+  double* normals = AQR_NEW(c, double, 3 * n_points);
+  aqr_origin* origins = AQR_NEW(c, aqr_origin, n_points);
+  uint8_t* kind = AQR_NEW(c, uint8_t, n_points);
+  int64_t* offsets = AQR_NEW(c, int64_t, n_faces + 1);
+  int64_t* connectivity = AQR_NEW(c, int64_t, n_corners);
+  aqr_index* source = AQR_NEW(c, aqr_index, n_faces);
+  *out = (aqr_mesh){ n_points, points, normals, origins, kind, n_faces, offsets, connectivity, source, n_corners };
+  AQR_REQUIRE(points && normals && origins && kind && offsets && connectivity && source, AQR_OUT_OF_MEMORY);
+  for (size_t v = 0; v < m->n_vertices; v++)
+  {
+    if (id[v] == AQR_NONE)
+      continue;
+    unscale(r->surface, m->vertices[v].position, points + 3 * (size_t)id[v]);
+    v3_store(normals + 3 * (size_t)id[v], m->vertices[v].normal);
+    origins[id[v]] = origin_of(r->surface, &m->vertices[v].place);
+    kind[id[v]] = m->vertices[v].kind;
+  }
+  size_t k = 0, f = 0;
+  for (size_t i = 0; i < m->n_faces; i++)
+  {
+    if (m->faces[i] == AQR_NONE)
+      continue;
+    offsets[f] = (int64_t)k;
+    aqr_index h = m->faces[i];
+    source[f++] = r->surface->source[m->vertices[m->half_edges[h].from].place.face];
+    do
+    {
+      AQR_REQUIRE(k < n_corners, AQR_INTERNAL);
+      connectivity[k++] = id[m->half_edges[h].from];
+      h = m->half_edges[h].next;
+    } while (h != m->faces[i]);
+  }
+  offsets[n_faces] = (int64_t)k;
+done:
+  AQR_DROP(c, id, m->n_vertices);
+  if (status != AQR_OK)
+    aqr_results_free_mesh(r);
+  return status;
+}
+
+void aqr_results_free_mesh(aqr_remesher* r)
+{
+  aqr_context* c = &r->context;
+  aqr_mesh* m = &r->mesh;
+  DROP_VIEW(c, double, m->points, 3 * m->number_of_points);
+  DROP_VIEW(c, double, m->normals, 3 * m->number_of_points);
+  DROP_VIEW(c, aqr_origin, m->origins, m->number_of_points);
+  DROP_VIEW(c, uint8_t, m->point_kind, m->number_of_points);
+  DROP_VIEW(c, int64_t, m->offsets, m->number_of_faces + 1);
+  DROP_VIEW(c, int64_t, m->connectivity, m->number_of_corners);
+  DROP_VIEW(c, aqr_index, m->face_source, m->number_of_faces);
+  memset(m, 0, sizeof *m);
+}
+
+aqr_status aqr_results_field(aqr_remesher* r)
+{
+  aqr_context* c = &r->context;
+  const aqr_surface* s = r->surface;
+  const aqr_field* field = &r->field;
+  aqr_results_free_field(r);
+  size_t n = s->n_clean, nf = s->n_faces;
+  double *points = AQR_NEW(c, double, 3 * n), *normals = AQR_NEW(c, double, 3 * n);
+  double *min_direction = AQR_NEW(c, double, 3 * n), *max_direction = AQR_NEW(c, double, 3 * n);
+  double *min_curvature = AQR_NEW(c, double, n), *max_curvature = AQR_NEW(c, double, n);
+  aqr_origin* origins = AQR_NEW(c, aqr_origin, n);
+  float *point_confidence = AQR_NEW(c, float, n), *confidence = AQR_NEW(c, float, nf);
+  aqr_index *triangles = AQR_NEW(c, aqr_index, 3 * nf), *source = AQR_NEW(c, aqr_index, nf);
+  r->field_view = (aqr_field_view){ n, points, origins, normals, min_direction, max_direction, min_curvature,
+    max_curvature, point_confidence, nf, triangles, source, confidence };
+  if (!points || !normals || !min_direction || !max_direction || !min_curvature || !max_curvature || !origins ||
+      !point_confidence || !confidence || !triangles || !source)
+  {
+    aqr_results_free_field(r);
+    return AQR_OUT_OF_MEMORY;
+  }
+  for (size_t v = s->n_points; v-- > 0;) /* backwards, so that the first sector of a point speaks for it */
+  {
+    size_t i = s->clean[v];
+    vec3 normal = v3_load(field->normal + 3 * v), d = v3_load(field->min_direction + 3 * v);
+    unscale(s, aqr_point(s, (aqr_index)v), points + 3 * i);
+    v3_store(normals + 3 * i, normal);
+    v3_store(min_direction + 3 * i, d);
+    v3_store(max_direction + 3 * i, v3_cross(normal, d));
+    min_curvature[i] = field->k_min[v] / s->diagonal;
+    max_curvature[i] = field->k_max[v] / s->diagonal;
+    point_confidence[i] = field->point_confidence[v];
+  }
+  memcpy(origins, s->origin, n * sizeof *origins);
+  memcpy(source, s->source, nf * sizeof *source);
+  memcpy(confidence, field->face_confidence, nf * sizeof *confidence);
+  for (size_t i = 0; i < 3 * nf; i++)
+    triangles[i] = s->clean[s->corner[i]];
+  return AQR_OK;
+}
+
+void aqr_results_free_field(aqr_remesher* r)
+{
+  aqr_context* c = &r->context;
+  aqr_field_view* v = &r->field_view;
+  size_t n = v->number_of_points, nf = v->number_of_triangles;
+  DROP_VIEW(c, double, v->points, 3 * n);
+  DROP_VIEW(c, aqr_origin, v->origins, n);
+  DROP_VIEW(c, double, v->normals, 3 * n);
+  DROP_VIEW(c, double, v->min_direction, 3 * n);
+  DROP_VIEW(c, double, v->max_direction, 3 * n);
+  DROP_VIEW(c, double, v->min_curvature, n);
+  DROP_VIEW(c, double, v->max_curvature, n);
+  DROP_VIEW(c, float, v->point_confidence, n);
+  DROP_VIEW(c, aqr_index, v->triangles, 3 * nf);
+  DROP_VIEW(c, aqr_index, v->triangle_source, nf);
+  DROP_VIEW(c, float, v->triangle_confidence, nf);
+  memset(v, 0, sizeof *v);
+}
+
+/* Normal curvature of the surface across direction d at the corner of face f nearest to p. */
+static double curvature_across(const aqr_remesher* r, aqr_index f, vec3 p, vec3 d)
+{
+  const aqr_surface* s = r->surface;
+  size_t v = s->corner[3 * f];
+  for (unsigned i = 1; i < 3; i++)
+    if (v3_norm2(v3_sub(aqr_point(s, s->corner[3 * f + i]), p)) < v3_norm2(v3_sub(aqr_point(s, (aqr_index)v), p)))
+      v = s->corner[3 * f + i];
+  double e = v3_dot(v3_unit(d), v3_load(r->field.min_direction + 3 * v)), along = fmin(1, e * e);
+  return (r->field.k_max[v] * along + r->field.k_min[v] * (1 - along)) / s->diagonal;
+}
+
+aqr_status aqr_results_lines(aqr_remesher* r)
+{
+  aqr_context* c = &r->context;
+  const aqr_lines* l = &r->lines;
+  aqr_results_free_lines(r);
+  size_t n = l->n_lines, m = l->n_samples;
+  int64_t* offsets = AQR_NEW(c, int64_t, n + 1);
+  uint8_t *type = AQR_NEW(c, uint8_t, n), *ends = AQR_NEW(c, uint8_t, 2 * n), *isotropic = AQR_NEW(c, uint8_t, m);
+  double *points = AQR_NEW(c, double, 3 * m), *curvature = AQR_NEW(c, double, m), *arc = AQR_NEW(c, double, m);
+  aqr_index* triangle = AQR_NEW(c, aqr_index, m);
+  r->lines_view = (aqr_lines_view){ n, offsets, type, ends, m, points, curvature, arc, triangle, isotropic };
+  if (!offsets || !type || !ends || !isotropic || !points || !curvature || !arc || !triangle)
+  {
+    aqr_results_free_lines(r);
+    return AQR_OUT_OF_MEMORY;
+  }
+  offsets[0] = 0;
+  for (size_t i = 0; i < n; i++)
+  {
+    const aqr_line* line = &l->lines[i];
+    offsets[i + 1] = offsets[i] + (int64_t)line->count;
+    type[i] = line->type;
+    ends[2 * i] = line->ends[0];
+    ends[2 * i + 1] = line->ends[1];
+    for (size_t k = 0; k < line->count; k++)
+    {
+      size_t j = line->first + k, to = k + 1 < line->count ? j : j - 1;
+      const aqr_sample* a = &l->samples[j];
+      vec3 d = v3_sub(l->samples[to + 1].p, l->samples[to].p);
+      unscale(r->surface, a->p, points + 3 * j);
+      curvature[j] = curvature_across(r, a->face, a->p, d);
+      arc[j] = (double)a->arc * r->surface->diagonal;
+      triangle[j] = a->face;
+      isotropic[j] = a->isotropic;
+    }
+  }
+  return AQR_OK;
+}
+
+void aqr_results_free_lines(aqr_remesher* r)
+{
+  aqr_context* c = &r->context;
+  aqr_lines_view* v = &r->lines_view;
+  size_t n = v->number_of_lines, m = v->number_of_points;
+  DROP_VIEW(c, int64_t, v->offsets, n + 1);
+  DROP_VIEW(c, uint8_t, v->type, n);
+  DROP_VIEW(c, uint8_t, v->ends, 2 * n);
+  DROP_VIEW(c, double, v->points, 3 * m);
+  DROP_VIEW(c, double, v->curvature, m);
+  DROP_VIEW(c, double, v->arc_length, m);
+  DROP_VIEW(c, aqr_index, v->triangle, m);
+  DROP_VIEW(c, uint8_t, v->isotropic, m);
+  memset(v, 0, sizeof *v);
+}
