@@ -58,9 +58,7 @@ int ReportProgress(void* user, double fraction, const char* stage)
 //------------------------------------------------------------------------------
 void ParallelFor(void*, size_t count, size_t grain, void (*body)(void* data, size_t begin, size_t end), void* data)
 {
-  vtkSMPTools::For(0,
-    static_cast<vtkIdType>(count),
-    static_cast<vtkIdType>(grain),
+  vtkSMPTools::For(0, static_cast<vtkIdType>(count), static_cast<vtkIdType>(grain),
     [=](vtkIdType begin, vtkIdType end) { body(data, static_cast<size_t>(begin), static_cast<size_t>(end)); });
 }
 
@@ -78,14 +76,18 @@ struct Triangles
     return this->Cells.empty() ? this->FirstCell + static_cast<vtkIdType>(triangle) : this->Cells[triangle];
   }
 
-  void Take(vtkPolyData* input)
+  aqr_status Take(vtkPolyData* input)
   {
     this->FirstCell = input->GetNumberOfVerts() + input->GetNumberOfLines();
     vtkCellArray* polys = input->GetPolys();
     if (input->GetNumberOfStrips() == 0 && polys->IsHomogeneous() == 3)
     {
       this->TakeConnectivity(polys);
-      return;
+      return AQR_OK; // the kernels check the indices
+    }
+    if (!InRange(polys, input->GetNumberOfPoints()) || !InRange(input->GetStrips(), input->GetNumberOfPoints()))
+    {
+      return AQR_INDEX_OUT_OF_RANGE; // vtkTriangleFilter would follow them
     }
     vtkNew<vtkIdTypeArray> cells;
     cells->SetName("cell");
@@ -108,11 +110,22 @@ struct Triangles
     this->TakeConnectivity(output->GetPolys());
     auto* source = vtkIdTypeArray::SafeDownCast(output->GetCellData()->GetArray("cell"));
     this->Cells.assign(source->GetPointer(0), source->GetPointer(0) + source->GetNumberOfValues());
+    return AQR_OK;
   }
 
 private:
   vtkSmartPointer<vtkCellArray> Holder;
   std::vector<int64_t> Copy;
+
+  static bool InRange(vtkCellArray* cells, vtkIdType points)
+  {
+    double range[2] = { 0.0, 0.0 };
+    if (cells->GetNumberOfConnectivityIds() > 0)
+    {
+      cells->GetConnectivityArray()->GetRange(range);
+    }
+    return range[0] >= 0.0 && range[1] < static_cast<double>(points);
+  }
 
   void TakeConnectivity(vtkCellArray* polys)
   {
@@ -293,7 +306,11 @@ public:
       return AQR_OK;
     }
     this->Forget();
-    this->Surface.Take(input);
+    aqr_status status = this->Surface.Take(input);
+    if (status != AQR_OK)
+    {
+      return status;
+    }
     aqr_input view = {};
     view.number_of_points = static_cast<size_t>(input->GetNumberOfPoints());
     view.number_of_triangles = this->Surface.Count;
@@ -314,7 +331,7 @@ public:
       converted->DeepCopy(data);
       view.points_d = converted->GetPointer(0);
     }
-    const aqr_status status = aqr_remesher_set_input(this->Remesher, &view);
+    status = aqr_remesher_set_input(this->Remesher, &view);
     if (status == AQR_OK)
     {
       this->Points = input->GetPoints();
@@ -630,9 +647,8 @@ void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* outp
 }
 
 //------------------------------------------------------------------------------
-int vtkAnisotropicQuadRemesher::RequestData(vtkInformation* vtkNotUsed(request),
-  vtkInformationVector** inputVector,
-  vtkInformationVector* outputVector)
+int vtkAnisotropicQuadRemesher::RequestData(
+  vtkInformation* vtkNotUsed(request), vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkPolyData* input = vtkPolyData::GetData(inputVector[0], 0);
   vtkPolyData* outputs[4];

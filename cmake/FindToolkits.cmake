@@ -6,14 +6,14 @@ if (AQR_BUILD_PLUGIN OR NOT VTK_DIR)
 endif ()
 
 set(components
-  CommonCore CommonDataModel CommonExecutionModel FiltersCore
+  CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersSources
   IOGeometry IOImage IOLegacy IOPLY IOXML RenderingCore RenderingOpenGL2)
 if (AQR_BUILD_PYTHON)
   list(APPEND components Python WrappingPythonCore)
 endif ()
 if (BUILD_TESTING)
   list(APPEND components
-    CommonSystem FiltersGeneral FiltersModeling FiltersSources InteractionStyle TestingCore TestingRendering)
+    CommonSystem FiltersGeneral FiltersModeling InteractionStyle TestingCore TestingRendering)
 endif ()
 find_package(VTK 9.1 REQUIRED COMPONENTS ${components})
 if (AQR_BUILD_PYTHON)

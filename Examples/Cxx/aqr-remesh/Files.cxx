@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Files.h"
+
+#include "vtkLogger.h"
+#include "vtkNew.h"
+#include "vtkOBJReader.h"
+#include "vtkOBJWriter.h"
+#include "vtkObjectFactory.h"
+#include "vtkOutputWindow.h"
+#include "vtkPLYReader.h"
+#include "vtkPLYWriter.h"
+#include "vtkPolyDataReader.h"
+#include "vtkPolyDataWriter.h"
+#include "vtkSTLReader.h"
+#include "vtkSTLWriter.h"
+#include "vtkTriangleFilter.h"
+#include "vtkXMLPolyDataReader.h"
+#include "vtkXMLPolyDataWriter.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace fs = std::filesystem;
+
+namespace
+{
+//------------------------------------------------------------------------------
+// vtkPLYReader only warns that a file ends early, goes on, and then reads through wild pointers.
+struct CutShort : std::runtime_error
+{
+  using std::runtime_error::runtime_error;
+};
+
+//------------------------------------------------------------------------------
+class Recorder : public vtkOutputWindow
+{
+public:
+  static Recorder* New();
+  vtkTypeMacro(Recorder, vtkOutputWindow);
+  void DisplayText(const char* text) override
+  {
+    const std::string message = text;
+    // The executive repeats that an algorithm failed; the algorithm itself has said why.
+    if (message.find("returned failure for request") != std::string::npos)
+    {
+      this->Failed = true;
+      return;
+    }
+    if (message.find("PLY error reading file") != std::string::npos)
+    {
+      throw CutShort("the file ends too early");
+    }
+    const bool isError = this->GetCurrentMessageType() == vtkOutputWindow::MESSAGE_TYPE_ERROR;
+    std::string& kept = isError ? this->FirstError : this->FirstWarning;
+    if (kept.empty())
+    {
+      kept = message;
+    }
+  }
+  std::string FirstError;
+  std::string FirstWarning;
+  bool Failed = false;
+};
+vtkStandardNewMacro(Recorder);
+
+//------------------------------------------------------------------------------
+// "ERROR: In file, line 1\nvtkClass (0x1): Reason: detail\n\n" becomes "Reason: detail".
+std::string Sentence(const std::string& message)
+{
+  const size_t begin = message.find("): ");
+  std::string text = begin == std::string::npos ? message : message.substr(begin + 3);
+  std::replace_if(
+    text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+  const size_t last = text.find_last_not_of(" .");
+  return text.substr(0, last == std::string::npos ? 0 : last + 1);
+}
+
+//------------------------------------------------------------------------------
+std::string Extension(const std::string& file)
+{
+  std::string extension = fs::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+//------------------------------------------------------------------------------
+template <typename ReaderT>
+vtkSmartPointer<vtkPolyData> Read(const std::string& file)
+{
+  vtkNew<ReaderT> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> ReadByExtension(const std::string& extension, const std::string& file)
+{
+  if (extension == ".ply")
+  {
+    return Read<vtkPLYReader>(file);
+  }
+  if (extension == ".obj")
+  {
+    return Read<vtkOBJReader>(file);
+  }
+  if (extension == ".stl")
+  {
+    return Read<vtkSTLReader>(file);
+  }
+  if (extension == ".vtk")
+  {
+    return Read<vtkPolyDataReader>(file);
+  }
+  if (extension == ".vtp")
+  {
+    return Read<vtkXMLPolyDataReader>(file);
+  }
+  return nullptr;
+}
+
+//------------------------------------------------------------------------------
+template <typename WriterT>
+bool Write(WriterT* writer, const std::string& file, vtkPolyData* surface)
+{
+  writer->SetFileName(file.c_str());
+  writer->SetInputData(surface);
+  return writer->Write() != 0 && writer->GetErrorCode() == 0;
+}
+
+//------------------------------------------------------------------------------
+bool WriteByExtension(const std::string& extension, const std::string& file, vtkPolyData* surface)
+{
+  if (extension == ".vtp")
+  {
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetCompressorTypeToNone();
+    return Write(writer.Get(), file, surface);
+  }
+  if (extension == ".vtk")
+  {
+    vtkNew<vtkPolyDataWriter> writer;
+    writer->SetFileTypeToBinary();
+    return Write(writer.Get(), file, surface);
+  }
+  if (extension == ".ply")
+  {
+    vtkNew<vtkPLYWriter> writer;
+    return Write(writer.Get(), file, surface);
+  }
+  if (extension == ".obj")
+  {
+    vtkNew<vtkOBJWriter> writer;
+    return Write(writer.Get(), file, surface);
+  }
+  vtkNew<vtkTriangleFilter> triangulate;
+  triangulate->SetInputData(surface);
+  triangulate->Update();
+  vtkNew<vtkSTLWriter> writer;
+  writer->SetFileTypeToBinary();
+  return Write(writer.Get(), file, triangulate->GetOutput());
+}
+
+//------------------------------------------------------------------------------
+fs::path Folder(const std::string& file)
+{
+  const fs::path folder = fs::path(file).parent_path();
+  return folder.empty() ? fs::path(".") : folder;
+}
+}
+
+//------------------------------------------------------------------------------
+Complaints::Complaints()
+{
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  vtkNew<Recorder> recorder;
+  vtkOutputWindow::SetInstance(recorder);
+}
+
+//------------------------------------------------------------------------------
+std::string Complaints::TakeError()
+{
+  auto* recorder = Recorder::SafeDownCast(vtkOutputWindow::GetInstance());
+  std::string error;
+  std::swap(error, recorder->FirstError);
+  if (error.empty() && recorder->Failed)
+  {
+    error = recorder->FirstWarning.empty() ? "not a valid file" : recorder->FirstWarning;
+  }
+  recorder->FirstWarning.clear();
+  recorder->Failed = false;
+  return Sentence(error);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> ReadSurface(const std::string& file, Complaints& complaints)
+{
+  std::error_code code;
+  if (fs::is_directory(file, code))
+  {
+    throw FileError(file, "is a folder");
+  }
+  if (!std::ifstream(file))
+  {
+    throw FileError(file, std::string("cannot be read: ") + std::strerror(errno));
+  }
+  if (fs::is_regular_file(file, code) && fs::file_size(file, code) == 0)
+  {
+    throw FileError(file, "is empty");
+  }
+  complaints.TakeError();
+  vtkSmartPointer<vtkPolyData> surface;
+  try
+  {
+    surface = ReadByExtension(Extension(file), file);
+  }
+  catch (const CutShort& failure)
+  {
+    throw FileError(file, std::string("cannot be read: ") + failure.what());
+  }
+  if (!surface)
+  {
+    throw FileError(file, "has none of the extensions .ply .obj .stl .vtk .vtp");
+  }
+  const std::string error = complaints.TakeError();
+  if (!error.empty())
+  {
+    throw FileError(file, "cannot be read: " + error);
+  }
+  if (surface->GetNumberOfPoints() == 0 || surface->GetNumberOfPolys() + surface->GetNumberOfStrips() == 0)
+  {
+    throw FileError(file, "holds no polygons, or is not a valid " + Extension(file) + " file");
+  }
+  return surface;
+}
+
+//------------------------------------------------------------------------------
+void CheckOutput(const std::string& file, const std::vector<std::string>& extensions)
+{
+  if (std::find(extensions.begin(), extensions.end(), Extension(file)) == extensions.end())
+  {
+    std::string list;
+    for (const std::string& extension : extensions)
+    {
+      list += " " + extension;
+    }
+    throw FileError(file, (extensions.size() > 1 ? "has none of the extensions" : "has not the extension") + list);
+  }
+  std::error_code code;
+  if (fs::is_directory(file, code))
+  {
+    throw FileError(file, "is a folder");
+  }
+  if (!fs::is_directory(Folder(file), code))
+  {
+    throw FileError(file, "cannot be written: its folder does not exist");
+  }
+  if (access(Folder(file).c_str(), W_OK) != 0)
+  {
+    throw FileError(file, std::string("cannot be written: ") + std::strerror(errno));
+  }
+}
+
+//------------------------------------------------------------------------------
+OutputFiles::OutputFiles(Complaints& complaints)
+  : Errors(complaints)
+{
+}
+
+//------------------------------------------------------------------------------
+OutputFiles::~OutputFiles()
+{
+  for (const Pending& pending : this->Files)
+  {
+    std::error_code code;
+    fs::remove(pending.Temporary, code);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string OutputFiles::Temporary(const std::string& file)
+{
+  const fs::path name = "." + std::to_string(getpid()) + "-" + std::to_string(this->Files.size()) + "-" +
+                        fs::path(file).filename().string();
+  this->Files.push_back({ (Folder(file) / name).string(), file });
+  return this->Files.back().Temporary;
+}
+
+//------------------------------------------------------------------------------
+void OutputFiles::WriteSurface(const std::string& file, vtkPolyData* surface)
+{
+  this->Errors.TakeError();
+  const bool written = WriteByExtension(Extension(file), this->Temporary(file), surface);
+  const std::string error = this->Errors.TakeError();
+  if (!written || !error.empty())
+  {
+    throw FileError(file, "cannot be written: " + (error.empty() ? "the disk may be full" : error));
+  }
+}
+
+//------------------------------------------------------------------------------
+void OutputFiles::WriteText(const std::string& file, const std::string& text)
+{
+  std::ofstream stream(this->Temporary(file));
+  stream << text;
+  stream.close();
+  if (!stream)
+  {
+    throw FileError(file, std::string("cannot be written: ") + std::strerror(errno));
+  }
+}
+
+//------------------------------------------------------------------------------
+void OutputFiles::Commit()
+{
+  for (const Pending& pending : this->Files)
+  {
+    std::error_code code;
+    fs::rename(pending.Temporary, pending.File, code);
+    if (code)
+    {
+      throw FileError(pending.File, "cannot be written: " + code.message());
+    }
+  }
+  this->Files.clear();
+}
