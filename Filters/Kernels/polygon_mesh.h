@@ -28,12 +28,10 @@ enum aqr_vertex_kind
 
 typedef struct aqr_vertex
 {
-  vec3 position,
-    normal; /* in the scaled surface's coordinates; unit normal of the input surface there */
+  vec3 position, normal; /* in the scaled surface's coordinates; unit normal of the input surface there */
   aqr_place place;
-  double size; /* local target spacing: the smaller of the two line spacings */
-  aqr_index
-    out; /* an outgoing half-edge (on a border: the one with face AQR_NONE); AQR_NONE: deleted */
+  double size;   /* local target spacing: the smaller of the two line spacings */
+  aqr_index out; /* an outgoing half-edge (on a border: the one with face AQR_NONE); AQR_NONE: deleted */
   uint8_t kind;
 } aqr_vertex;
 
@@ -54,5 +52,93 @@ typedef struct aqr_polygon_mesh
   aqr_index* faces; /* a half-edge of each face; AQR_NONE: deleted */
   size_t n_faces, face_capacity;
 } aqr_polygon_mesh;
+
+static inline aqr_index aqr_pm_next(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->half_edges[h].next;
+}
+static inline aqr_index aqr_pm_prev(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->half_edges[h].prev;
+}
+static inline aqr_index aqr_pm_from(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->half_edges[h].from;
+}
+static inline aqr_index aqr_pm_to(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->half_edges[h ^ 1].from;
+}
+static inline aqr_index aqr_pm_face(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->half_edges[h].face;
+}
+/* The next outgoing half-edge counter-clockwise around the start of h. A cycle on borders too. */
+static inline aqr_index aqr_pm_next_around(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->half_edges[h].prev ^ 1;
+}
+static inline vec3 aqr_pm_point(const aqr_polygon_mesh* m, aqr_index v)
+{
+  return m->vertices[v].position;
+}
+static inline bool aqr_pm_edge_lives(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->half_edges[h].from != AQR_NONE;
+}
+/* Edges of chains are neither removed nor moved off their curve. */
+static inline bool aqr_pm_on_chain(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return m->edge_type[h >> 1] >= AQR_LINE_BOUNDARY;
+}
+static inline bool aqr_pm_on_border(const aqr_polygon_mesh* m, aqr_index v)
+{
+  return m->half_edges[m->vertices[v].out].face == AQR_NONE;
+}
+
+size_t aqr_pm_valence(const aqr_polygon_mesh* m, aqr_index v);
+size_t aqr_pm_face_size(const aqr_polygon_mesh* m, aqr_index f);
+/* The half-edge from u to v, AQR_NONE where there is none. */
+aqr_index aqr_pm_find(const aqr_polygon_mesh* m, aqr_index u, aqr_index v);
+/* Whether faces f and g have the same set of vertices. */
+bool aqr_pm_same_vertices(const aqr_polygon_mesh* m, aqr_index f, aqr_index g);
+/* Another face with the same vertices as f; AQR_NONE where there is none. */
+aqr_index aqr_pm_duplicate(const aqr_polygon_mesh* m, aqr_index f);
+
+/* ---- Euler operators: on success the cells change, the surface does not ---- */
+
+/* Inserts a vertex into the edge of h, which then ends at it; the rest of the edge is next(h). */
+aqr_status aqr_pm_split_edge(
+  aqr_context* c, aqr_polygon_mesh* m, aqr_index h, const aqr_vertex* vertex, aqr_index* inserted);
+/* New edge between the corners at the starts of h0 and h1, two different half-edges of a face. h0 keeps its face. The
+ * new half-edge before h0 is prev(h0), the one before h1 is prev(h1). */
+aqr_status aqr_pm_split_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index h0, aqr_index h1, uint8_t type);
+/* Merges the two different faces beside an edge. The face of h stays. */
+bool aqr_pm_remove_edge(aqr_polygon_mesh* m, aqr_index h);
+/* Deletes the start of h, a vertex of valence one, with its edge. */
+bool aqr_pm_remove_leaf(aqr_polygon_mesh* m, aqr_index h);
+/* Deletes a vertex of valence two, its two edges become one. */
+bool aqr_pm_join_edges(aqr_polygon_mesh* m, aqr_index v);
+/* Moves all edges of the end of h to its start. Refuses loops, and inner edges between two points of the border. */
+bool aqr_pm_contract(aqr_polygon_mesh* m, aqr_index h);
+
+/* ---- whole meshes ---- */
+
+/* Appends vertices and polygons; connectivity counts from the first of the new vertices. The polygons must be a
+ * manifold, consistently oriented surface, else AQR_INTERNAL and *m as it was. Edges get type MIN, on borders BOUNDARY.
+ */
+aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* vertices, size_t n_vertices,
+  const size_t* offsets, size_t n_faces, const aqr_index* connectivity);
+/* Forgets what was deleted; order is kept. */
+aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m);
+void aqr_pm_free(aqr_context* c, aqr_polygon_mesh* m);
+
+/* Whether every link agrees with every other: a cell decomposition of a surface, maybe with loops and digons. */
+bool aqr_pm_is_consistent(const aqr_polygon_mesh* m);
+/* Whether it is an ordinary mesh besides: no loops, no two edges between the same vertices, no vertex twice in a face,
+ * no two faces with the same vertices. */
+bool aqr_pm_is_regular(const aqr_polygon_mesh* m);
+/* Vertices - edges + faces. */
+long aqr_pm_euler(const aqr_polygon_mesh* m);
 
 #endif

@@ -1,0 +1,446 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "regularize.h"
+
+#include <string.h>
+
+enum
+{
+  tidy_passes = 32,
+  arc_candidates = 24 /* corners tried on either side when a face that meets itself is split */
+};
+
+aqr_vertex aqr_middle(const aqr_polygon_mesh* m, aqr_index h)
+{
+  const aqr_vertex *a = &m->vertices[aqr_pm_from(m, h)], *b = &m->vertices[aqr_pm_to(m, h)];
+  aqr_vertex r = *a;
+  r.position = v3_scale(v3_add(a->position, b->position), 0.5);
+  r.normal = v3_unit(v3_add(a->normal, b->normal));
+  if (!(v3_norm2(r.normal) > 0))
+    r.normal = a->normal;
+  r.size = 0.5 * (a->size + b->size);
+  r.out = AQR_NONE;
+  r.kind = m->edge_type[h >> 1] == AQR_LINE_BOUNDARY  ? AQR_VERTEX_BOUNDARY
+           : m->edge_type[h >> 1] == AQR_LINE_FEATURE ? AQR_VERTEX_FEATURE
+                                                      : AQR_VERTEX_INTERIOR;
+  return r;
+}
+
+/* ---- tidying ---- */
+
+/* A vertex of valence two where the line does not turn by more than thirty degrees. */
+static bool is_straight(const aqr_polygon_mesh* m, aqr_index v)
+{
+  aqr_index h = m->vertices[v].out, g = aqr_pm_next_around(m, h);
+  vec3 a = v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), aqr_pm_point(m, v));
+  vec3 b = v3_sub(aqr_pm_point(m, aqr_pm_to(m, g)), aqr_pm_point(m, v));
+  return v3_dot(a, b) < -0.866 * v3_norm(a) * v3_norm(b);
+}
+
+static bool tidy_at(aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index n = aqr_pm_next(m, h), f = aqr_pm_face(m, h), v = aqr_pm_from(m, h);
+  if (f == AQR_NONE)
+    return false;
+  if (!aqr_pm_on_chain(m, h))
+  {
+    if (aqr_pm_prev(m, h) == (h ^ 1))
+      return aqr_pm_remove_leaf(m, h);
+    if (n == h || (aqr_pm_next(m, n) == h && n != (h ^ 1)))
+      return aqr_pm_remove_edge(m, h);
+  }
+  return m->vertices[v].out == h && aqr_can_join(m, v) && is_straight(m, v) && aqr_pm_join_edges(m, v);
+}
+
+bool aqr_tidy(aqr_context* c, aqr_polygon_mesh* m)
+{
+  for (unsigned pass = 0; pass < tidy_passes; pass++)
+  {
+    bool changed = false;
+    if (!aqr_step(c, 0))
+      return false;
+    for (aqr_index h = 0; h < m->n_half_edges; h++)
+      while (aqr_pm_edge_lives(m, h) && tidy_at(m, h)) /* each turn removes an edge */
+        changed = true;
+    if (!changed)
+      break;
+  }
+  return true;
+}
+
+/* ---- making it regular ---- */
+
+/* The middle of an edge, drawn towards the faces beside it: edges between the same two vertices part this way. */
+static aqr_vertex aside(const aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_vertex r = aqr_middle(m, h);
+  if (r.kind != AQR_VERTEX_INTERIOR)
+    return r;
+  vec3 sum = { 0, 0, 0 };
+  for (unsigned side = 0; side < 2; side++)
+  {
+    aqr_index k = h ^ side;
+    vec3 centre = { 0, 0, 0 };
+    double n = 0;
+    do
+    {
+      centre = v3_add(centre, aqr_pm_point(m, aqr_pm_from(m, k)));
+      n += 1;
+      k = aqr_pm_next(m, k);
+    } while (k != (h ^ side));
+    sum = v3_madd(sum, 1 / n, centre);
+  }
+  r.position = v3_madd(v3_scale(r.position, 0.5), 0.25, sum);
+  return r;
+}
+
+static aqr_status split_aside(aqr_context* c, aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_vertex w = aside(m, h);
+  aqr_index inserted;
+  return aqr_pm_split_edge(c, m, h, &w, &inserted);
+}
+
+/* Loops become three edges; of two edges between the same vertices one is split, rather not one of a chain. Afterwards
+ * the graph is simple: inserted vertices have two different neighbours and no parallel edges. */
+static aqr_status split_parallel_edges(aqr_context* c, aqr_polygon_mesh* m)
+{
+  aqr_status status = AQR_OK;
+  size_t n = m->n_vertices, n_edges = m->n_half_edges;
+  aqr_index *seen = AQR_NEW(c, aqr_index, n), *by = AQR_NEW(c, aqr_index, n);
+  AQR_REQUIRE(seen && by, AQR_OUT_OF_MEMORY);
+  for (aqr_index h = 0; h < n_edges; h += 2)
+    if (aqr_pm_edge_lives(m, h) && aqr_pm_from(m, h) == aqr_pm_to(m, h))
+    {
+      AQR_TRY(split_aside(c, m, h));
+      AQR_TRY(split_aside(c, m, h));
+    }
+  for (size_t v = 0; v < n; v++)
+    by[v] = AQR_NONE;
+  for (aqr_index u = 0; u < n; u++)
+  {
+    if (m->vertices[u].out == AQR_NONE)
+      continue;
+    aqr_index h = m->vertices[u].out;
+    do
+    {
+      aqr_index v = aqr_pm_to(m, h);
+      if (v > u && v < n)
+      {
+        if (by[v] == u)
+        {
+          bool other = aqr_pm_on_chain(m, h) && !aqr_pm_on_chain(m, seen[v]);
+          aqr_index k = other ? seen[v] : h;
+          if (other)
+            seen[v] = h;
+          AQR_TRY(split_aside(c, m, k)); /* keeps the half-edge at u */
+        }
+        else
+        {
+          by[v] = u;
+          seen[v] = h;
+        }
+      }
+      h = aqr_pm_next_around(m, h);
+    } while (h != m->vertices[u].out);
+  }
+  /* A lone edge with one face around it. */
+  for (aqr_index h = 0; h < m->n_half_edges; h += 2)
+    if (aqr_pm_edge_lives(m, h) && aqr_pm_next(m, h) == (h ^ 1) && aqr_pm_prev(m, h) == (h ^ 1))
+      AQR_TRY(split_aside(c, m, h));
+done:
+  AQR_DROP(c, seen, n);
+  AQR_DROP(c, by, n);
+  return status;
+}
+
+typedef struct walker
+{
+  aqr_index* corner; /* half-edges of the face at hand */
+  size_t n, capacity;
+  aqr_index* last; /* per vertex: last position in the face at hand, valid where `mark` says so */
+  aqr_index* mark;
+  size_t last_capacity, mark_capacity;
+} walker;
+
+static aqr_status collect(aqr_context* c, const aqr_polygon_mesh* m, aqr_index f, walker* w)
+{
+  w->n = 0;
+  aqr_index h = m->faces[f];
+  do
+  {
+    if (!AQR_RESERVE(c, w->corner, w->capacity, w->n + 1))
+      return AQR_OUT_OF_MEMORY;
+    w->corner[w->n++] = h;
+    h = aqr_pm_next(m, h);
+  } while (h != m->faces[f]);
+  return AQR_OK;
+}
+
+/* Two corners of the face at the same vertex. `stamp` differs from call to call. */
+static bool find_repeat(const aqr_polygon_mesh* m, walker* w, aqr_index stamp, size_t* i, size_t* j)
+{
+  for (size_t k = 0; k < w->n; k++)
+  {
+    aqr_index v = aqr_pm_from(m, w->corner[k]);
+    if (w->mark[v] == stamp)
+    {
+      *i = w->last[v];
+      *j = k;
+      return true;
+    }
+    w->mark[v] = stamp;
+    w->last[v] = (aqr_index)k;
+  }
+  return false;
+}
+
+/* Joins two corners of a face by an edge, with a vertex in its middle where there is such an edge already. */
+static aqr_status connect(aqr_context* c, aqr_polygon_mesh* m, aqr_index h0, aqr_index h1)
+{
+  bool direct = aqr_pm_find(m, aqr_pm_from(m, h0), aqr_pm_from(m, h1)) == AQR_NONE;
+  aqr_status status = aqr_pm_split_face(c, m, h0, h1, AQR_LINE_MIN);
+  return status != AQR_OK || direct ? status : split_aside(c, m, aqr_pm_prev(m, h0));
+}
+
+/* The shortest connection between the corners after i and before j and those after j and before i. */
+static bool choose_connection(
+  const aqr_polygon_mesh* m, const walker* w, size_t i, size_t j, aqr_index* h0, aqr_index* h1)
+{
+  size_t inner = j - i - 1, outer = w->n - inner - 2;
+  size_t step_in = inner / arc_candidates + 1, step_out = outer / arc_candidates + 1;
+  double best = INFINITY;
+  bool found = false;
+  for (unsigned whole = 0; whole < 2 && !found;
+       whole++) /* all pairs only where the chosen ones are all of one vertex */
+  {
+    for (size_t a = 0; a < inner; a += whole ? 1 : step_in)
+      for (size_t b = 0; b < outer; b += whole ? 1 : step_out)
+      {
+        aqr_index ha = w->corner[i + 1 + a], hb = w->corner[(j + 1 + b) % w->n];
+        aqr_index u = aqr_pm_from(m, ha), v = aqr_pm_from(m, hb);
+        double d = v3_norm2(v3_sub(aqr_pm_point(m, u), aqr_pm_point(m, v)));
+        if (u == v)
+          continue;
+        if (aqr_pm_find(m, u, v) != AQR_NONE)
+          d = 4 * d + 1;
+        if (!found || d < best)
+        {
+          found = true;
+          best = d;
+          *h0 = ha;
+          *h1 = hb;
+        }
+      }
+  }
+  return found;
+}
+
+/* Each split lowers the sum over all faces of (corners - different vertices) by at least one, because the two corners
+ * at one vertex come to lie in different faces and every other vertex gains at most a corner where it gains a face. In
+ * a simple graph there is always a pair of different vertices to connect: else the face would be v w v w, which needs
+ * two edges between v and w. */
+static aqr_status part_repeats(aqr_context* c, aqr_polygon_mesh* m)
+{
+  aqr_status status = AQR_OK;
+  walker w = { 0 };
+  aqr_index stamp = 0;
+  size_t known = 0;
+  for (aqr_index f = 0; f < m->n_faces; f++)
+  {
+    if (f % 65536 == 0)
+      AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
+    while (m->faces[f] != AQR_NONE)
+    {
+      size_t i, j;
+      aqr_index h0, h1;
+      AQR_REQUIRE(AQR_RESERVE(c, w.last, w.last_capacity, m->n_vertices) &&
+                    AQR_RESERVE(c, w.mark, w.mark_capacity, m->n_vertices),
+        AQR_OUT_OF_MEMORY);
+      for (; known < m->n_vertices; known++)
+        w.mark[known] = 0;
+      AQR_TRY(collect(c, m, f, &w));
+      if (!find_repeat(m, &w, ++stamp, &i, &j))
+        break;
+      AQR_REQUIRE(choose_connection(m, &w, i, j, &h0, &h1), AQR_INTERNAL);
+      AQR_TRY(connect(c, m, h0, h1));
+    }
+  }
+done:
+  AQR_DROP(c, w.corner, w.capacity);
+  AQR_DROP(c, w.last, w.last_capacity);
+  AQR_DROP(c, w.mark, w.mark_capacity);
+  return status;
+}
+
+/* A vertex inside the first of two faces with the same vertices tells them apart, and no other face has it. */
+static aqr_status part_duplicates(aqr_context* c, aqr_polygon_mesh* m)
+{
+  aqr_status status = AQR_OK;
+  size_t n = m->n_faces;
+  for (aqr_index f = 0; f < n; f++)
+  {
+    if (m->faces[f] == AQR_NONE || aqr_pm_duplicate(m, f) == AQR_NONE)
+      continue;
+    aqr_index h0 = m->faces[f], h1 = aqr_pm_next(m, h0), h2 = aqr_pm_next(m, h1), inserted;
+    bool triangle = aqr_pm_next(m, h2) == h0;
+    vec3 centre = { 0, 0, 0 };
+    double size = 0;
+    aqr_index k = h0;
+    do
+    {
+      centre = v3_add(centre, aqr_pm_point(m, aqr_pm_from(m, k)));
+      size += 1;
+      k = aqr_pm_next(m, k);
+    } while (k != h0);
+    AQR_TRY(aqr_pm_split_face(c, m, h0, triangle ? h1 : h2, AQR_LINE_MIN));
+    aqr_vertex w = aqr_middle(m, aqr_pm_prev(m, h0));
+    w.position = v3_scale(centre, 1 / size);
+    AQR_TRY(aqr_pm_split_edge(c, m, aqr_pm_prev(m, h0), &w, &inserted));
+    if (triangle) /* the other face is now h1, h2 and back by way of the centre: join the centre to its third corner */
+      AQR_TRY(aqr_pm_split_face(c, m, h2, aqr_pm_next(m, aqr_pm_next(m, h2)), AQR_LINE_MIN));
+  }
+done:
+  return status;
+}
+
+aqr_status aqr_regularize(aqr_context* c, aqr_polygon_mesh* m)
+{
+  aqr_status status = AQR_OK;
+  AQR_TRY(split_parallel_edges(c, m));
+  AQR_TRY(part_repeats(c, m));
+  AQR_TRY(part_duplicates(c, m));
+done:
+  return status;
+}
+
+/* ---- operators that keep a mesh regular ---- */
+
+static bool face_contains(const aqr_polygon_mesh* m, aqr_index f, aqr_index v)
+{
+  aqr_index h = m->faces[f];
+  do
+  {
+    if (aqr_pm_from(m, h) == v)
+      return true;
+    h = aqr_pm_next(m, h);
+  } while (h != m->faces[f]);
+  return false;
+}
+
+bool aqr_can_merge(const aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
+  if (aqr_pm_on_chain(m, h) || f == AQR_NONE || g == AQR_NONE || f == g)
+    return false;
+  unsigned common = 0;
+  for (aqr_index k = aqr_pm_next(m, h); k != h && common <= 2; k = aqr_pm_next(m, k))
+    common += face_contains(m, g, aqr_pm_from(m, k));
+  return common + face_contains(m, g, aqr_pm_from(m, h)) == 2;
+}
+
+bool aqr_can_join(const aqr_polygon_mesh* m, aqr_index v)
+{
+  aqr_index h = m->vertices[v].out, g = aqr_pm_next_around(m, h);
+  if (m->vertices[v].kind != AQR_VERTEX_INTERIOR || g == h || aqr_pm_next_around(m, g) != h)
+    return false;
+  if (aqr_pm_on_chain(m, h) || aqr_pm_on_chain(m, g))
+    return false;
+  aqr_index a = aqr_pm_to(m, h), b = aqr_pm_to(m, g);
+  if (a == b || a == v || b == v || aqr_pm_find(m, a, b) != AQR_NONE)
+    return false;
+  for (unsigned side = 0; side < 2; side++)
+  {
+    aqr_index k = side ? g : h;
+    if (aqr_pm_face(m, k) == AQR_NONE || aqr_pm_next(m, aqr_pm_next(m, aqr_pm_next(m, k))) == k)
+      return false;
+  }
+  return true;
+}
+
+/* The corner opposite to h where its face is a triangle; AQR_NONE otherwise. */
+static aqr_index apex(const aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index n = aqr_pm_next(m, h), p = aqr_pm_prev(m, h);
+  return aqr_pm_face(m, h) != AQR_NONE && aqr_pm_next(m, n) == p ? aqr_pm_from(m, p) : AQR_NONE;
+}
+
+/* Whether the chains allow to bring the two ends of h together. */
+static bool chains_allow(const aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index u = aqr_pm_from(m, h), v = aqr_pm_to(m, h);
+  uint8_t a = m->vertices[u].kind, b = m->vertices[v].kind;
+  bool chain = aqr_pm_on_chain(m, h);
+  bool border = aqr_pm_face(m, h) == AQR_NONE || aqr_pm_face(m, h ^ 1) == AQR_NONE;
+  if (a == AQR_VERTEX_CORNER && b == AQR_VERTEX_CORNER)
+    return false;
+  if (a != AQR_VERTEX_INTERIOR && b != AQR_VERTEX_INTERIOR && !chain)
+    return false;
+  return border || !aqr_pm_on_border(m, u) || !aqr_pm_on_border(m, v);
+}
+
+/* A triangle beside a contracted edge becomes one edge: its apex must keep a fan, and its two edges may not both be of
+ * chains. */
+static bool triangle_may_go(const aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index w = apex(m, h);
+  if (w == AQR_NONE)
+    return true;
+  if (aqr_pm_on_chain(m, aqr_pm_next(m, h)) && aqr_pm_on_chain(m, aqr_pm_prev(m, h)))
+    return false;
+  return aqr_pm_valence(m, w) > (aqr_pm_on_border(m, w) ? 2 : 3);
+}
+
+bool aqr_can_contract(const aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index t = h ^ 1, u = aqr_pm_from(m, h), v = aqr_pm_to(m, h), f = aqr_pm_face(m, h), g = aqr_pm_face(m, t);
+  if (!chains_allow(m, h) || !triangle_may_go(m, h) || !triangle_may_go(m, t))
+    return false;
+  aqr_index left = apex(m, h), right = apex(m, t);
+  size_t valence = aqr_pm_valence(m, u) + aqr_pm_valence(m, v) - 2 - (left != AQR_NONE) - (right != AQR_NONE);
+  bool border = aqr_pm_on_border(m, u) || aqr_pm_on_border(m, v);
+  if (valence < (border ? 2 : 3))
+    return false;
+  aqr_index outer = f == AQR_NONE ? h : g == AQR_NONE ? t : AQR_NONE;
+  if (outer != AQR_NONE && aqr_pm_next(m, aqr_pm_next(m, aqr_pm_next(m, outer))) == outer)
+    return false;
+  /* link condition: common neighbours are apexes only, common faces are those beside the edge only */
+  for (aqr_index k = aqr_pm_next_around(m, h); k != h; k = aqr_pm_next_around(m, k))
+  {
+    aqr_index w = aqr_pm_to(m, k), face = aqr_pm_face(m, k);
+    if (w != left && w != right && aqr_pm_find(m, w, v) != AQR_NONE)
+      return false;
+    if (face != AQR_NONE && face != f && face != g && face_contains(m, face, v))
+      return false;
+  }
+  return true;
+}
+
+/* Merges the two edges of a digon at k into one; the one of a chain stays. */
+static void close_digon(aqr_polygon_mesh* m, aqr_index k)
+{
+  aqr_index n = aqr_pm_next(m, k);
+  if (aqr_pm_face(m, k) == AQR_NONE || aqr_pm_next(m, n) != k)
+    return;
+  if (aqr_pm_on_chain(m, k) || !aqr_pm_remove_edge(m, k))
+    aqr_pm_remove_edge(m, n);
+}
+
+aqr_index aqr_contract(aqr_polygon_mesh* m, aqr_index h, const aqr_vertex* middle)
+{
+  if (m->vertices[aqr_pm_to(m, h)].kind > m->vertices[aqr_pm_from(m, h)].kind)
+    h ^= 1;
+  aqr_index u = aqr_pm_from(m, h), left = aqr_pm_next(m, h), right = aqr_pm_next(m, h ^ 1);
+  bool free_ends = m->vertices[u].kind == AQR_VERTEX_INTERIOR;
+  if (!aqr_pm_contract(m, h))
+    return AQR_NONE;
+  if (free_ends && middle)
+  {
+    aqr_vertex w = *middle;
+    w.kind = AQR_VERTEX_INTERIOR;
+    w.out = m->vertices[u].out;
+    m->vertices[u] = w;
+  }
+  close_digon(m, left);
+  close_digon(m, right);
+  return u;
+}

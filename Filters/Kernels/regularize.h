@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* From a cell decomposition of the surface to an ordinary polygon mesh: no loops, no two edges between the same
+ * vertices, no vertex twice in a face, no two faces with the same vertices. */
+#ifndef AQR_REGULARIZE_H
+#define AQR_REGULARIZE_H
+
+#include "polygon_mesh.h"
+
+/* Removes what draws nothing: dangling edges (paper 5), digons, loops around nothing, vertices in the middle of a
+ * straight line. Only ever removes; chains stay. */
+bool aqr_tidy(aqr_context* c, aqr_polygon_mesh* m);
+
+/* Makes any consistent mesh regular by inserting vertices and splitting faces, for every input. New vertices carry the
+ * place of a neighbour. */
+aqr_status aqr_regularize(aqr_context* c, aqr_polygon_mesh* m);
+
+/* ---- operators that keep a regular mesh regular but for equal faces, or do nothing and say so ---- */
+
+/* Whether the edge of h may be contracted: chains stay apart and on their curves (the start of h is moved unless it is
+ * the more constrained end), and no cell degenerates. */
+bool aqr_can_contract(const aqr_polygon_mesh* m, aqr_index h);
+/* Contracts into the more constrained end, or into `middle` where both are equally free; returns the vertex that stays.
+ */
+aqr_index aqr_contract(aqr_polygon_mesh* m, aqr_index h, const aqr_vertex* middle);
+/* Whether the two faces beside h touch only along it, so that merging them makes a proper face. */
+bool aqr_can_merge(const aqr_polygon_mesh* m, aqr_index h);
+/* Whether v is an inner vertex of valence two whose edges may become one. */
+bool aqr_can_join(const aqr_polygon_mesh* m, aqr_index v);
+
+/* A vertex in the middle of the edge of h: on its chain if it has one. */
+aqr_vertex aqr_middle(const aqr_polygon_mesh* m, aqr_index h);
+
+#endif
