@@ -288,17 +288,19 @@ class vtkAnisotropicQuadRemesher::vtkInternals
 public:
   ~vtkInternals() { aqr_remesher_free(this->Remesher); }
 
+  aqr_status SetHooks(const aqr_hooks& hooks)
+  {
+    if (this->Remesher)
+    {
+      aqr_remesher_set_hooks(this->Remesher, &hooks);
+      return AQR_OK;
+    }
+    return aqr_remesher_new(&hooks, &this->Remesher);
+  }
+
   // Hands the surface to the kernels unless they hold it already.
   aqr_status SetInput(vtkPolyData* input)
   {
-    if (!this->Remesher)
-    {
-      const aqr_status status = aqr_remesher_new(nullptr, &this->Remesher);
-      if (status != AQR_OK)
-      {
-        return status;
-      }
-    }
     const vtkMTimeType time = GeometryTime(input);
     const vtkIdType first = input->GetNumberOfVerts() + input->GetNumberOfLines();
     if (this->Points == input->GetPoints() && this->InputTime == time && this->Surface.FirstCell == first)
@@ -524,19 +526,21 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
 
   vtkInternals& internals = *this->Internals;
   aqr_status status = AQR_OK;
+  aqr_hooks hooks = {};
+  hooks.user = static_cast<vtkAlgorithm*>(this);
+  hooks.progress = ReportProgress;
+  hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
   const auto run = [&]
   {
-    status = internals.SetInput(input);
-    if (status != AQR_OK)
+    status = internals.SetHooks(hooks);
+    if (status == AQR_OK)
     {
-      return;
+      status = internals.SetInput(input);
     }
-    aqr_hooks hooks = {};
-    hooks.user = static_cast<vtkAlgorithm*>(this);
-    hooks.progress = ReportProgress;
-    hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
-    aqr_remesher_set_hooks(internals.Remesher, &hooks);
-    status = aqr_remesher_run(internals.Remesher, &options);
+    if (status == AQR_OK)
+    {
+      status = aqr_remesher_run(internals.Remesher, &options);
+    }
   };
   // The backend named here is in every VTK since 9.1, whereas the default one may be sequential.
   vtkSMPTools::LocalScope(vtkSMPTools::Config{ this->NumberOfThreads, "STDThread", false }, run);
