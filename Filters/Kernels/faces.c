@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "faces.h"
+
+#include "partition.h"
+#include "regularize.h"
+
+enum
+{
+  rounds = 4,
+  split_candidates = 64 /* corners looked at on one side when a large face is split */
+};
+
+static const double near_intersection = 0.2; /* of the local spacing: such vertices are merged (paper 5) */
+static const double weld_reach = 0.75;       /* of the local spacing: T-joints as near may become one crossing */
+static const double least_gain = 0.05;       /* an operation is worth its while */
+static const double merge_allowance = 0.3;   /* what merging near intersections may cost in shape */
+
+/* The corners of f, with vertex `gone` taking the place of `kept` at `middle`; false where there are too many. */
+static bool gather(
+  const aqr_polygon_mesh* m, aqr_index f, aqr_index gone, aqr_index kept, const aqr_vertex* middle, aqr_polygon* g)
+{
+  g->n = 0;
+  aqr_index h = m->faces[f];
+  do
+  {
+    aqr_index v = aqr_pm_from(m, h);
+    bool moved = middle && (v == gone || v == kept);
+    const aqr_vertex* w = moved ? middle : &m->vertices[v];
+    v = moved ? kept : v;
+    if (g->n == 0 || g->vertex[g->n - 1] != v)
+    {
+      if (g->n == AQR_POLYGON_CORNERS)
+        return false;
+      g->p[g->n] = w->position;
+      g->normal[g->n] = w->normal;
+      g->vertex[g->n++] = v;
+    }
+    h = aqr_pm_next(m, h);
+  } while (h != m->faces[f]);
+  if (g->n > 1 && g->vertex[g->n - 1] == g->vertex[0])
+    g->n--;
+  return true;
+}
+
+static double face_cost(
+  const aqr_polygon_mesh* m, aqr_index f, aqr_index gone, aqr_index kept, const aqr_vertex* middle)
+{
+  aqr_polygon g;
+  if (!gather(m, f, gone, kept, middle, &g))
+    return 1.1 * (double)aqr_pm_face_size(m, f);
+  return g.n < 3 ? 0 : aqr_polygon_cost(&g);
+}
+
+/* ---- contraction ---- */
+
+/* What contracting h saves in the cost of the faces around its ends. */
+static double contraction_gain(const aqr_polygon_mesh* m, aqr_index h, const aqr_vertex* middle)
+{
+  aqr_index u = aqr_pm_from(m, h), v = aqr_pm_to(m, h), f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
+  double gain = 0;
+  for (unsigned side = 0; side < 2; side++)
+  {
+    aqr_index start = h ^ side, k = start;
+    do
+    {
+      aqr_index face = aqr_pm_face(m, k);
+      if (face != AQR_NONE && (side == 0 || (face != f && face != g)))
+        gain += face_cost(m, face, AQR_NONE, AQR_NONE, NULL) - face_cost(m, face, v, u, middle);
+      k = aqr_pm_next_around(m, k);
+    } while (k != start);
+  }
+  return gain;
+}
+
+/* Where the ends of h meet when it is contracted. */
+static aqr_vertex meeting(const aqr_polygon_mesh* m, aqr_index h)
+{
+  const aqr_vertex *a = &m->vertices[aqr_pm_from(m, h)], *b = &m->vertices[aqr_pm_to(m, h)];
+  if (a->kind == AQR_VERTEX_INTERIOR && b->kind == AQR_VERTEX_INTERIOR)
+    return aqr_middle(m, h);
+  return b->kind > a->kind ? *b : *a;
+}
+
+static double edge_length(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return v3_norm(v3_sub(aqr_pm_point(m, aqr_pm_from(m, h)), aqr_pm_point(m, aqr_pm_to(m, h))));
+}
+
+static double local_size(const aqr_polygon_mesh* m, aqr_index h)
+{
+  return fmin(m->vertices[aqr_pm_from(m, h)].size, m->vertices[aqr_pm_to(m, h)].size);
+}
+
+static bool contract_if(aqr_polygon_mesh* m, aqr_index h, double least)
+{
+  if (!aqr_can_contract(m, h))
+    return false;
+  aqr_vertex middle = meeting(m, h);
+  return contraction_gain(m, h, &middle) >= least && aqr_contract(m, h, &middle) != AQR_NONE;
+}
+
+/* Three lines that nearly meet in one point make a tiny triangle: its vertices become one (paper 5). */
+static bool merge_near_intersections(aqr_context* c, aqr_polygon_mesh* m)
+{
+  for (aqr_index h = 0; h < m->n_half_edges; h += 2)
+  {
+    if (h % 65536 == 0 && !aqr_step(c, 0.2))
+      return false;
+    if (aqr_pm_edge_lives(m, h) && edge_length(m, h) < near_intersection * local_size(m, h))
+      contract_if(m, h, -merge_allowance);
+  }
+  return true;
+}
+
+/* Four corners, all different half-edges. */
+static bool is_quad(const aqr_polygon_mesh* m, aqr_index f)
+{
+  aqr_index h = m->faces[f];
+  return aqr_pm_next(m, aqr_pm_next(m, h)) == aqr_pm_prev(m, aqr_pm_prev(m, h)) &&
+         aqr_pm_next(m, aqr_pm_next(m, h)) != h && aqr_pm_next(m, aqr_pm_next(m, aqr_pm_next(m, h))) != h;
+}
+
+/* Whether both faces beside h have other than four corners. */
+static bool between_odd_faces(const aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
+  return f != AQR_NONE && g != AQR_NONE && !is_quad(m, f) && !is_quad(m, g);
+}
+
+/* Lines that end from both sides on nearby places of a third make two pentagons; where they meet there is a crossing
+ * and all faces are quads. Short sides of triangles go likewise. */
+static bool weld_joints(aqr_context* c, aqr_polygon_mesh* m, bool* changed)
+{
+  for (aqr_index h = 0; h < m->n_half_edges; h += 2)
+  {
+    if (h % 65536 == 0 && !aqr_step(c, 0.4))
+      return false;
+    if (aqr_pm_edge_lives(m, h) && between_odd_faces(m, h) && edge_length(m, h) < weld_reach * local_size(m, h))
+      *changed |= contract_if(m, h, least_gain);
+  }
+  return true;
+}
+
+/* ---- merging and splitting ---- */
+
+/* Draws the diagonals of a partition in a face whose corners are half-edges `corner`. They come outermost first, so
+ * that the half-edge after corner `from` and the one before corner `to` still lie in the face at hand. */
+static aqr_status draw(aqr_context* c, aqr_polygon_mesh* m, const aqr_index* corner, const aqr_partition* p)
+{
+  aqr_status status = AQR_OK;
+  for (unsigned i = 0; i < p->n; i++)
+    AQR_TRY(aqr_pm_split_face(c, m, corner[p->from[i]], aqr_pm_next(m, corner[p->to[i] - 1]), AQR_LINE_MIN));
+done:
+  return status;
+}
+
+static void add_corner(const aqr_polygon_mesh* m, aqr_index h, aqr_polygon* g, aqr_index* corner)
+{
+  aqr_index v = aqr_pm_from(m, h);
+  g->p[g->n] = m->vertices[v].position;
+  g->normal[g->n] = m->vertices[v].normal;
+  g->vertex[g->n] = v;
+  corner[g->n++] = h;
+}
+
+/* Whether a vertex at a corner of the polygon keeps at least three edges (two on borders) when an edge at it goes and
+ * the diagonals of the partition come. */
+static bool keeps_fan(const aqr_polygon_mesh* m, const aqr_polygon* g, unsigned corner, const aqr_partition* p)
+{
+  size_t valence = aqr_pm_valence(m, g->vertex[corner]) - 1;
+  for (unsigned i = 0; i < p->n; i++)
+    valence += p->from[i] == corner || p->to[i] == corner;
+  return valence >= (aqr_pm_on_border(m, g->vertex[corner]) ? 2 : 3);
+}
+
+/* Cuts the union of the two faces beside h anew where that is better. */
+static aqr_status redraw(aqr_context* c, aqr_polygon_mesh* m, aqr_index h, unsigned largest, bool* changed)
+{
+  aqr_index f = aqr_pm_face(m, h), other = aqr_pm_face(m, h ^ 1), corner[AQR_POLYGON_CORNERS];
+  aqr_polygon g = { .n = 0 };
+  size_t n_f = aqr_pm_face_size(m, f);
+  if (n_f + aqr_pm_face_size(m, other) - 2 > AQR_POLYGON_CORNERS || !aqr_can_merge(m, h))
+    return AQR_OK;
+  double before = face_cost(m, f, AQR_NONE, AQR_NONE, NULL) + face_cost(m, other, AQR_NONE, AQR_NONE, NULL);
+  for (aqr_index k = aqr_pm_next(m, h); k != h; k = aqr_pm_next(m, k))
+    add_corner(m, k, &g, corner);
+  for (aqr_index k = aqr_pm_next(m, h ^ 1); k != (h ^ 1); k = aqr_pm_next(m, k))
+    add_corner(m, k, &g, corner);
+  aqr_partition p = aqr_best_partition(m, &g, largest, h);
+  if (!(p.cost < before - least_gain) || !keeps_fan(m, &g, 0, &p) || !keeps_fan(m, &g, (unsigned)n_f - 1, &p))
+    return AQR_OK;
+  *changed = true;
+  return aqr_pm_remove_edge(m, h) ? draw(c, m, corner, &p) : AQR_INTERNAL;
+}
+
+static aqr_status redraw_all(aqr_context* c, aqr_polygon_mesh* m, unsigned largest, bool* changed)
+{
+  aqr_status status = AQR_OK;
+  size_t n = m->n_half_edges;
+  for (aqr_index h = 0; h < n; h += 2)
+  {
+    if (h % 65536 == 0)
+      AQR_REQUIRE(aqr_step(c, 0.6), AQR_CANCELLED);
+    if (aqr_pm_edge_lives(m, h) && !aqr_pm_on_chain(m, h) && between_odd_faces(m, h))
+      AQR_TRY(redraw(c, m, h, largest, changed));
+  }
+done:
+  return status;
+}
+
+/* The best partition of a face that has too many corners or a concave one (paper 5.2). */
+static aqr_status partition_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, const aqr_faces_options* o)
+{
+  aqr_polygon g = { .n = 0 };
+  aqr_index corner[AQR_POLYGON_CORNERS], h = m->faces[f];
+  do
+  {
+    add_corner(m, h, &g, corner);
+    h = aqr_pm_next(m, h);
+  } while (h != m->faces[f]);
+  if ((int)g.n <= o->largest_valence && !(o->convex_partition && aqr_polygon_is_concave(&g)))
+    return AQR_OK;
+  aqr_partition p = aqr_best_partition(m, &g, o->largest_valence > 5 ? 5 : (unsigned)o->largest_valence, AQR_NONE);
+  return p.cost < INFINITY ? draw(c, m, corner, &p) : AQR_OK;
+}
+
+/* How far the two angles that a diagonal to `to` makes at a corner are from right angles; infinite outside the face. */
+static double diagonal_angles(const aqr_polygon_mesh* m, aqr_index h, aqr_index to)
+{
+  const aqr_vertex* v = &m->vertices[aqr_pm_from(m, h)];
+  vec3 prev = aqr_pm_point(m, aqr_pm_from(m, aqr_pm_prev(m, h))), next = aqr_pm_point(m, aqr_pm_to(m, h));
+  vec3 end = aqr_pm_point(m, to);
+  double whole = aqr_corner_angle(prev, v->position, next, v->normal);
+  double part = aqr_corner_angle(end, v->position, next, v->normal);
+  const double right = 1.57079632679489662;
+  return part < whole ? fmin(right, fabs(part - right)) + fmin(right, fabs(whole - part - right)) : INFINITY;
+}
+
+/* Splits a face of very many corners at the diagonal with the highest score (paper 5.2). False where it has none. */
+static aqr_status split_large(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, size_t n, bool* split)
+{
+  aqr_index h = m->faces[f], best[2] = { AQR_NONE, AQR_NONE };
+  double least = INFINITY, perimeter = 0;
+  size_t stride = n / split_candidates + 1;
+  for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))
+    perimeter += edge_length(m, h);
+  for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))
+  {
+    if (i % stride)
+      continue;
+    aqr_index k = aqr_pm_next(m, h);
+    for (size_t j = 2; j + 1 < n; j++)
+    {
+      k = aqr_pm_next(m, k);
+      if (i + j >= n || j % stride)
+        continue;
+      aqr_index u = aqr_pm_from(m, h), v = aqr_pm_from(m, k);
+      double angles = diagonal_angles(m, h, v) + diagonal_angles(m, k, u);
+      double cost = (angles < INFINITY ? angles : 100) +
+                    8 * v3_norm(v3_sub(aqr_pm_point(m, u), aqr_pm_point(m, v))) / (perimeter > 0 ? perimeter : 1);
+      if (cost < least && aqr_pm_find(m, u, v) == AQR_NONE)
+      {
+        least = cost;
+        best[0] = h;
+        best[1] = k;
+      }
+    }
+  }
+  *split = best[0] != AQR_NONE;
+  return *split ? aqr_pm_split_face(c, m, best[0], best[1], AQR_LINE_MIN) : AQR_OK;
+}
+
+/* Faces that a split adds come at the end of the list and are looked at in turn. */
+static aqr_status partition_all(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces_options* o)
+{
+  aqr_status status = AQR_OK;
+  for (aqr_index f = 0; f < m->n_faces; f++)
+  {
+    if (f % 65536 == 0)
+      AQR_REQUIRE(aqr_step(c, 0.8), AQR_CANCELLED);
+    if (m->faces[f] == AQR_NONE || is_quad(m, f))
+      continue;
+    size_t n = aqr_pm_face_size(m, f);
+    for (bool split = true; split && n > AQR_POLYGON_CORNERS && n > (size_t)o->largest_valence;)
+    {
+      AQR_TRY(split_large(c, m, f, n, &split));
+      n = aqr_pm_face_size(m, f);
+    }
+    if (n <= AQR_POLYGON_CORNERS)
+      AQR_TRY(partition_face(c, m, f, o));
+  }
+done:
+  return status;
+}
+
+aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces_options* options)
+{
+  aqr_status status = AQR_OK;
+  unsigned largest = options->largest_valence > 5 ? 5 : (unsigned)options->largest_valence;
+  AQR_REQUIRE(aqr_pm_is_consistent(m), AQR_INTERNAL);
+  AQR_REQUIRE(aqr_tidy(c, m), AQR_CANCELLED);
+  AQR_TRY(aqr_regularize(c, m));
+  AQR_REQUIRE(merge_near_intersections(c, m), AQR_CANCELLED);
+  for (unsigned round = 0; round < rounds; round++)
+  {
+    bool changed = false;
+    AQR_REQUIRE(weld_joints(c, m, &changed), AQR_CANCELLED);
+    AQR_TRY(redraw_all(c, m, largest, &changed));
+    AQR_TRY(partition_all(c, m, options));
+    if (!changed)
+      break;
+  }
+  AQR_TRY(aqr_regularize(c, m));
+  AQR_REQUIRE(aqr_pm_is_consistent(m) && aqr_pm_is_regular(m), AQR_INTERNAL);
+  AQR_TRY(aqr_pm_compact(c, m));
+done:
+  return status;
+}

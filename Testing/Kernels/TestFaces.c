@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "test.h"
+
+#include "cells.h"
+#include "faces.h"
+
+static const aqr_faces_options usual = { .convex_partition = true, .largest_valence = 5 };
+
+static size_t count_quads(const aqr_polygon_mesh* m)
+{
+  size_t n = 0;
+  for (aqr_index f = 0; f < m->n_faces; f++)
+    n += m->faces[f] != AQR_NONE && aqr_pm_face_size(m, f) == 4;
+  return n;
+}
+
+AQR_TEST(any_cell_decomposition_ends_as_a_valid_mesh_of_the_same_topology)
+{
+  for (unsigned seed = 1; seed <= 300; seed++)
+  {
+    aqr_context c = { 0 };
+    aqr_polygon_mesh m = { 0 };
+    bool open = seed % 2;
+    CHECK(open ? sheet_of_quads(&c, 9, 8, &m) : torus_of_quads(&c, 12, 8, &m));
+    disturb(&c, &m, seed, 20 + seed);
+    CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+    CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m));
+    CHECK(aqr_pm_euler(&m) == (open ? 1 : 0));
+    aqr_pm_free(&c, &m);
+    CHECK(c.bytes == 0);
+  }
+}
+
+AQR_TEST(a_perfect_lattice_is_left_alone)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(torus_of_quads(&c, 16, 10, &m));
+  CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+  CHECK(m.n_vertices == 160 && m.n_faces == 160 && count_quads(&m) == 160);
+  aqr_pm_free(&c, &m);
+}
+
+AQR_TEST(corners_of_the_boundary_stay_where_they_are)
+{
+  for (unsigned seed = 1; seed <= 50; seed++)
+  {
+    aqr_context c = { 0 };
+    aqr_polygon_mesh m = { 0 };
+    CHECK(sheet_of_quads(&c, 9, 8, &m));
+    for (size_t v = 0; v < m.n_vertices; v++)
+      m.vertices[v].size = 10; /* everything is near to everything */
+    CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+    unsigned corners = 0;
+    for (size_t v = 0; v < m.n_vertices; v++)
+    {
+      vec3 p = m.vertices[v].position;
+      bool border = p.x == 0 || p.x == 1 || p.y == 0 || p.y == 1;
+      CHECK(border == aqr_pm_on_border(&m, (aqr_index)v));
+      corners += (p.x == 0 || p.x == 1) && (p.y == 0 || p.y == 1);
+    }
+    CHECK(corners == 4);
+    aqr_pm_free(&c, &m);
+  }
+}
+
+/* Two lines that end on a third from both sides, a tenth of a cell apart. */
+AQR_TEST(t_joints_that_face_each_other_become_one_crossing)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(sheet_of_quads(&c, 7, 7, &m));
+  /* move the vertex in the middle a little aside and give half of its edges to a new one */
+  aqr_index v = AQR_NONE, a, h;
+  for (aqr_index i = 0; i < m.n_vertices; i++)
+    if (fabs(m.vertices[i].position.x - 3.0 / 7) < 1e-9 && fabs(m.vertices[i].position.y - 3.0 / 7) < 1e-9)
+      v = i;
+  h = m.vertices[v].out;
+  for (unsigned k = 0; k < 4 && aqr_pm_point(&m, aqr_pm_to(&m, h)).x < 3.0 / 7 + 0.1; k++)
+    h = aqr_pm_next_around(&m, h);
+  aqr_vertex beside = m.vertices[v];
+  beside.position.x += 0.05;
+  CHECK(aqr_pm_split_edge(&c, &m, h, &beside, &a) == AQR_OK);
+  /* the line that came from below at v now ends at a */
+  aqr_index up = aqr_pm_prev(&m, h) ^ 1, top = aqr_pm_next(&m, up);
+  aqr_index onto = aqr_pm_next(&m, h);
+  CHECK(aqr_pm_remove_edge(&m, up));
+  CHECK(aqr_pm_split_face(&c, &m, onto, top, AQR_LINE_MIN) == AQR_OK);
+  CHECK(count_quads(&m) == 47);
+  CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+  CHECK(count_quads(&m) == 49 && m.n_faces == 49);
+  aqr_pm_free(&c, &m);
+}
+
+AQR_TEST(no_face_has_more_corners_than_asked_for)
+{
+  for (int largest = 4; largest <= 6; largest++)
+  {
+    aqr_context c = { 0 };
+    aqr_polygon_mesh m = { 0 };
+    aqr_faces_options o = { true, largest };
+    CHECK(sheet_of_quads(&c, 12, 12, &m));
+    for (aqr_index h = 0; h < m.n_half_edges; h += 2)
+    {
+      vec3 p = aqr_pm_point(&m, aqr_pm_from(&m, h)), q = aqr_pm_point(&m, aqr_pm_to(&m, h));
+      vec3 mid = v3_scale(v3_add(p, q), 0.5);
+      if (mid.x > 0.3 && mid.x < 0.7 && mid.y > 0.3 && mid.y < 0.7)
+        aqr_pm_remove_edge(&m, h);
+    }
+    CHECK(aqr_faces_finish(&c, &m, &o) == AQR_OK);
+    for (aqr_index f = 0; f < m.n_faces; f++)
+      CHECK((int)aqr_pm_face_size(&m, f) <= largest);
+    aqr_pm_free(&c, &m);
+  }
+}
+
+typedef struct ration
+{
+  size_t left;
+} ration;
+
+static void* rationed(void* user, void* old, size_t old_bytes, size_t bytes)
+{
+  ration* r = user;
+  (void)old_bytes;
+  if (bytes == 0)
+  {
+    free(old);
+    return NULL;
+  }
+  return r->left && r->left-- ? realloc(old, bytes) : NULL;
+}
+
+AQR_TEST(running_out_of_memory_leaves_nothing_behind)
+{
+  unsigned failed = 0;
+  for (size_t allowed = 0; allowed < 60; allowed++)
+  {
+    ration r = { SIZE_MAX };
+    aqr_context c = { .hooks = { .user = &r, .reallocate = rationed } };
+    aqr_polygon_mesh m = { 0 };
+    CHECK(torus_of_quads(&c, 12, 8, &m));
+    disturb(&c, &m, 5, 200);
+    r.left = allowed;
+    aqr_status status = aqr_faces_finish(&c, &m, &usual);
+    CHECK(status == AQR_OK || status == AQR_OUT_OF_MEMORY);
+    failed += status != AQR_OK;
+    CHECK(status != AQR_OK || aqr_pm_is_regular(&m));
+    aqr_pm_free(&c, &m);
+    CHECK(c.bytes == 0);
+  }
+  CHECK(failed > 5 && failed < 60);
+}
+
+AQR_TEST_MAIN
