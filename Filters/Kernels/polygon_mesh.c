@@ -501,7 +501,7 @@ done:
   return status;
 }
 
-void aqr_pm_free(aqr_context* c, aqr_polygon_mesh* m)
+void aqr_polygon_mesh_free(aqr_context* c, aqr_polygon_mesh* m)
 {
   AQR_DROP(c, m->vertices, m->vertex_capacity);
   AQR_DROP(c, m->half_edges, m->half_edge_capacity);

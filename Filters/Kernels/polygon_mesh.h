@@ -131,7 +131,7 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
   const size_t* offsets, size_t n_faces, const aqr_index* connectivity);
 /* Forgets what was deleted; order is kept. */
 aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m);
-void aqr_pm_free(aqr_context* c, aqr_polygon_mesh* m);
+void aqr_polygon_mesh_free(aqr_context* c, aqr_polygon_mesh* m);
 
 /* Whether every link agrees with every other: a cell decomposition of a surface, maybe with loops and digons. */
 bool aqr_pm_is_consistent(const aqr_polygon_mesh* m);

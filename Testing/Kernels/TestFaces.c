@@ -26,7 +26,7 @@ AQR_TEST(any_cell_decomposition_ends_as_a_valid_mesh_of_the_same_topology)
     CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
     CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m));
     CHECK(aqr_pm_euler(&m) == (open ? 1 : 0));
-    aqr_pm_free(&c, &m);
+    aqr_polygon_mesh_free(&c, &m);
     CHECK(c.bytes == 0);
   }
 }
@@ -38,7 +38,7 @@ AQR_TEST(a_perfect_lattice_is_left_alone)
   CHECK(torus_of_quads(&c, 16, 10, &m));
   CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
   CHECK(m.n_vertices == 160 && m.n_faces == 160 && count_quads(&m) == 160);
-  aqr_pm_free(&c, &m);
+  aqr_polygon_mesh_free(&c, &m);
 }
 
 AQR_TEST(corners_of_the_boundary_stay_where_they_are)
@@ -60,7 +60,7 @@ AQR_TEST(corners_of_the_boundary_stay_where_they_are)
       corners += (p.x == 0 || p.x == 1) && (p.y == 0 || p.y == 1);
     }
     CHECK(corners == 4);
-    aqr_pm_free(&c, &m);
+    aqr_polygon_mesh_free(&c, &m);
   }
 }
 
@@ -89,7 +89,7 @@ AQR_TEST(t_joints_that_face_each_other_become_one_crossing)
   CHECK(count_quads(&m) == 47);
   CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
   CHECK(count_quads(&m) == 49 && m.n_faces == 49);
-  aqr_pm_free(&c, &m);
+  aqr_polygon_mesh_free(&c, &m);
 }
 
 AQR_TEST(no_face_has_more_corners_than_asked_for)
@@ -110,7 +110,7 @@ AQR_TEST(no_face_has_more_corners_than_asked_for)
     CHECK(aqr_faces_finish(&c, &m, &o) == AQR_OK);
     for (aqr_index f = 0; f < m.n_faces; f++)
       CHECK((int)aqr_pm_face_size(&m, f) <= largest);
-    aqr_pm_free(&c, &m);
+    aqr_polygon_mesh_free(&c, &m);
   }
 }
 
@@ -146,7 +146,7 @@ AQR_TEST(running_out_of_memory_leaves_nothing_behind)
     CHECK(status == AQR_OK || status == AQR_OUT_OF_MEMORY);
     failed += status != AQR_OK;
     CHECK(status != AQR_OK || aqr_pm_is_regular(&m));
-    aqr_pm_free(&c, &m);
+    aqr_polygon_mesh_free(&c, &m);
     CHECK(c.bytes == 0);
   }
   CHECK(failed > 5 && failed < 60);

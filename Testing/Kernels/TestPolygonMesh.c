@@ -79,7 +79,7 @@ AQR_TEST(loops_and_digons_become_a_regular_mesh_of_the_same_topology)
       CHECK(aqr_pm_euler(&m) == complexes[i].euler);
       if (aqr_failures > before)
         printf("in: %s\n", complexes[i].name);
-      aqr_pm_free(&c, &m);
+      aqr_polygon_mesh_free(&c, &m);
       CHECK(c.bytes == 0);
     }
 }
@@ -101,7 +101,7 @@ AQR_TEST(the_checker_notices_a_wrong_link)
   CHECK(!aqr_pm_is_consistent(&m));
   m.half_edges[7] = saved;
   CHECK(aqr_pm_is_consistent(&m));
-  aqr_pm_free(&c, &m);
+  aqr_polygon_mesh_free(&c, &m);
 }
 
 AQR_TEST(polygons_that_share_an_edge_three_times_are_refused)
@@ -114,7 +114,7 @@ AQR_TEST(polygons_that_share_an_edge_three_times_are_refused)
   CHECK(aqr_pm_append(&c, &m, v, 5, offsets, 3, fan) == AQR_INTERNAL);
   CHECK(aqr_pm_append(&c, &m, v, 5, offsets, 3, turned) == AQR_INTERNAL);
   CHECK(m.n_vertices == 0 && m.n_half_edges == 0 && m.n_faces == 0);
-  aqr_pm_free(&c, &m);
+  aqr_polygon_mesh_free(&c, &m);
   CHECK(c.bytes == 0);
 }
 
@@ -135,7 +135,7 @@ AQR_TEST(euler_operators_in_any_order_keep_the_links_and_the_topology)
     CHECK(aqr_regularize(&c, &m) == AQR_OK);
     CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m));
     CHECK(aqr_pm_euler(&m) == (open ? 1 : 0));
-    aqr_pm_free(&c, &m);
+    aqr_polygon_mesh_free(&c, &m);
     CHECK(c.bytes == 0);
   }
 }

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "closest.h"
+
+enum
+{
+  most_around = 256 /* faces looked at around a vertex */
+};
+
+/* The point of a face closest to p, by the regions of its plane (Ericson, Real-Time Collision Detection, 5.1.5). */
+static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
+{
+  vec3 a = aqr_point(s, s->corner[3 * f]), b = aqr_point(s, s->corner[3 * f + 1]),
+       c = aqr_point(s, s->corner[3 * f + 2]);
+  vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), ap = v3_sub(p, a), bp = v3_sub(p, b), cp = v3_sub(p, c);
+  double d1 = v3_dot(ab, ap), d2 = v3_dot(ac, ap), d3 = v3_dot(ab, bp), d4 = v3_dot(ac, bp);
+  double d5 = v3_dot(ab, cp), d6 = v3_dot(ac, cp), v, w;
+  double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  if (d1 <= 0 && d2 <= 0)
+    v = w = 0;
+  else if (d3 >= 0 && d4 <= d3)
+  {
+    v = 1;
+    w = 0;
+  }
+  else if (vc <= 0 && d1 >= 0 && d3 <= 0)
+  {
+    v = d1 / (d1 - d3);
+    w = 0;
+  }
+  else if (d6 >= 0 && d5 <= d6)
+  {
+    v = 0;
+    w = 1;
+  }
+  else if (vb <= 0 && d2 >= 0 && d6 <= 0)
+  {
+    v = 0;
+    w = d2 / (d2 - d6);
+  }
+  else if (va <= 0 && d4 >= d3 && d5 >= d6)
+  {
+    w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    v = 1 - w;
+  }
+  else
+  {
+    double sum = va + vb + vc;
+    v = sum > 0 ? vb / sum : 0;
+    w = sum > 0 ? vc / sum : 0;
+  }
+  double u = v == 0 ? 1 - w : w == 0 ? 1 - v : fmax(0, 1 - v - w);
+  if (v + w >= 1)
+    u = 0;
+  aqr_closest r = { { f, { u, v, w } }, v3_madd(v3_madd(a, v, ab), w, ac), 0 };
+  r.distance2 = v3_norm2(v3_sub(p, r.position));
+  return r;
+}
+
+static aqr_index other_side(const aqr_surface* s, aqr_index h, bool over_seams)
+{
+  return over_seams ? aqr_any_twin(s, h) : aqr_twin(s, h);
+}
+
+static void keep_nearer(aqr_closest* best, aqr_closest x)
+{
+  if (x.distance2 < best->distance2)
+    *best = x;
+}
+
+/* The nearest of the faces around the start of h. */
+static aqr_closest around(const aqr_surface* s, aqr_index h, vec3 p, bool over_seams, aqr_closest best)
+{
+  aqr_index k = other_side(s, aqr_prev(h), over_seams);
+  for (unsigned i = 0; i < most_around && k != AQR_NONE && k != h; i++)
+  {
+    keep_nearer(&best, on_face(s, aqr_face_of(k), p));
+    k = other_side(s, aqr_prev(k), over_seams);
+  }
+  if (k == h)
+    return best;
+  k = other_side(s, h, over_seams); /* met a border: the other way round */
+  for (unsigned i = 0; i < most_around && k != AQR_NONE; i++)
+  {
+    k = aqr_next(k);
+    keep_nearer(&best, on_face(s, aqr_face_of(k), p));
+    k = other_side(s, k, over_seams);
+  }
+  return best;
+}
+
+aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams)
+{
+  aqr_closest r = on_face(s, start, p);
+  for (unsigned step = 0; step < most_steps; step++)
+  {
+    aqr_index f = r.place.face;
+    unsigned zeros = 0, corner = 0, opposite = 0;
+    for (unsigned i = 0; i < 3; i++)
+      if (r.place.bary[i] == 0)
+      {
+        zeros++;
+        opposite = i;
+      }
+      else
+        corner = i;
+    aqr_closest best = r;
+    if (zeros == 1)
+    {
+      aqr_index t = other_side(s, 3 * f + (opposite + 1) % 3, over_seams);
+      if (t != AQR_NONE)
+        keep_nearer(&best, on_face(s, aqr_face_of(t), p));
+    }
+    else if (zeros > 1)
+      best = around(s, 3 * f + corner, p, over_seams, best);
+    if (best.place.face == f)
+      break;
+    r = best;
+  }
+  return r;
+}

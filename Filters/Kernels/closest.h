@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Closest points on the working surface by walking over it, never through space to another sheet. */
+#ifndef AQR_CLOSEST_H
+#define AQR_CLOSEST_H
+
+#include "polygon_mesh.h"
+#include "surface.h"
+
+typedef struct aqr_closest
+{
+  aqr_place place;
+  vec3 position;
+  double distance2;
+} aqr_closest;
+
+/* From face `start` to neighbouring faces as long as they are nearer to p, at most most_steps of them. Seams are
+ * crossed on demand, borders never. */
+aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams);
+
+static inline vec3 aqr_place_position(const aqr_surface* s, const aqr_place* at)
+{
+  vec3 p = { 0, 0, 0 };
+  for (unsigned i = 0; i < 3; i++)
+    p = v3_madd(p, at->bary[i], aqr_point(s, s->corner[3 * at->face + i]));
+  return p;
+}
+
+#endif

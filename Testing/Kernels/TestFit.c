@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "test.h"
+
+#include "cells.h"
+#include "closest.h"
+#include "fit.h"
+
+#include <stdlib.h>
+
+/* A working surface whose triangles halve the quads of a grid. */
+static bool surface_of_grid(
+  aqr_context* c, size_t nu, size_t nv, bool closed, aqr_vertex (*place)(double, double), aqr_surface* s)
+{
+  aqr_polygon_mesh m = { 0 };
+  if (!grid_of_quads(c, nu, nv, closed, place, &m))
+    return false;
+  size_t quads = m.n_faces;
+  for (aqr_index f = 0; f < quads; f++)
+    if (aqr_pm_split_face(c, &m, m.faces[f], aqr_pm_next(&m, aqr_pm_next(&m, m.faces[f])), AQR_LINE_MIN) != AQR_OK)
+      return false;
+  *s = (aqr_surface){ .n_points = m.n_vertices, .n_faces = m.n_faces };
+  s->points = malloc(3 * s->n_points * sizeof(double));
+  s->corner = malloc(3 * s->n_faces * sizeof(aqr_index));
+  s->twin = malloc(3 * s->n_faces * sizeof(aqr_index));
+  aqr_index* at = malloc(m.n_half_edges * sizeof(aqr_index));
+  for (size_t v = 0; v < s->n_points; v++)
+    v3_store(s->points + 3 * v, m.vertices[v].position);
+  for (aqr_index f = 0; f < s->n_faces; f++)
+  {
+    aqr_index h = m.faces[f];
+    for (unsigned i = 0; i < 3; i++, h = aqr_pm_next(&m, h))
+      at[h] = 3 * f + i;
+  }
+  for (aqr_index h = 0; h < m.n_half_edges; h++)
+    if (aqr_pm_face(&m, h) != AQR_NONE)
+    {
+      s->corner[at[h]] = aqr_pm_from(&m, h);
+      s->twin[at[h]] = aqr_pm_face(&m, h ^ 1) == AQR_NONE ? AQR_NONE : at[h ^ 1];
+    }
+  free(at);
+  aqr_polygon_mesh_free(c, &m);
+  return true;
+}
+
+static void free_surface(aqr_surface* s)
+{
+  free(s->points);
+  free(s->corner);
+  free(s->twin);
+}
+
+/* Puts every vertex's place on the nearest face, found by looking at all of them. */
+static void set_places(const aqr_surface* s, aqr_polygon_mesh* m)
+{
+  for (size_t v = 0; v < m->n_vertices; v++)
+  {
+    aqr_closest best = { .distance2 = INFINITY };
+    for (aqr_index f = 0; f < s->n_faces; f++)
+    {
+      aqr_closest x = aqr_closest_near(s, f, m->vertices[v].position, 0, false);
+      if (x.distance2 < best.distance2)
+        best = x;
+    }
+    m->vertices[v].place = best.place;
+  }
+}
+
+static double from_torus(vec3 q)
+{
+  return hypot(hypot(q.x, q.y) - 1, q.z) - 0.4;
+}
+
+static aqr_vertex on_bowl(double s, double t)
+{
+  double x = s - 0.5, y = t - 0.5;
+  return (
+    aqr_vertex){ .position = v3(x, y, (x * x + y * y) / 4), .normal = v3_unit(v3(-x / 2, -y / 2, 1)), .size = 0.05 };
+}
+
+static double from_bowl(vec3 q)
+{
+  return q.z - (q.x * q.x + q.y * q.y) / 4;
+}
+
+static bool is_middle_of_bowl(vec3 p)
+{
+  return fabs(p.x) < 0.26 && fabs(p.y) < 0.26;
+}
+
+static bool is_anywhere(vec3 p)
+{
+  (void)p;
+  return true;
+}
+
+/* Root mean square distance over both triangles of every quad in a region. */
+static double rms(const aqr_polygon_mesh* m, double (*distance)(vec3), bool (*inside)(vec3))
+{
+  double sum = 0, area = 0;
+  for (aqr_index f = 0; f < m->n_faces; f++)
+  {
+    vec3 p[4];
+    aqr_index h = m->faces[f];
+    bool use = true;
+    for (unsigned i = 0; i < 4; i++, h = aqr_pm_next(m, h))
+    {
+      p[i] = aqr_pm_point(m, aqr_pm_from(m, h));
+      use = use && inside(p[i]);
+    }
+    unsigned first = v3_norm2(v3_sub(p[0], p[2])) > v3_norm2(v3_sub(p[1], p[3]));
+    for (unsigned t = 0; t < 2 && use; t++)
+    {
+      vec3 a = p[first], b = p[(first + t + 1) % 4], c = p[(first + t + 2) % 4];
+      double w = v3_norm(v3_cross(v3_sub(b, a), v3_sub(c, a)));
+      for (unsigned i = 0; i < 20; i++)
+        for (unsigned j = 0; i + j < 20; j++)
+        {
+          double x = (i + 1 / 3.0) / 20, y = (j + 1 / 3.0) / 20;
+          double d = distance(v3_madd(v3_madd(a, x, v3_sub(b, a)), y, v3_sub(c, a)));
+          sum += w * d * d;
+          area += w;
+        }
+    }
+  }
+  return sqrt(sum / area);
+}
+
+/* A lattice of spacing d on z = (x^2 + y^2) / 4 departs from it by e = d^2 / 16 in the middle of its edges: 1.4 e root
+ * mean square as it stands, 0.42 e at best. */
+AQR_TEST(a_lattice_on_a_bowl_is_fitted_as_well_as_can_be)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  aqr_surface s;
+  double e = 0.05 * 0.05 / 16;
+  CHECK(surface_of_grid(&c, 200, 200, false, on_bowl, &s));
+  CHECK(grid_of_quads(&c, 20, 20, false, on_bowl, &m));
+  set_places(&s, &m);
+  CHECK(rms(&m, from_bowl, is_middle_of_bowl) > 1.35 * e);
+  CHECK(aqr_fit(&c, &s, &m) == AQR_OK);
+  CHECK_BELOW(rms(&m, from_bowl, is_middle_of_bowl) / e, 0.45);
+  aqr_polygon_mesh_free(&c, &m);
+  free_surface(&s);
+  CHECK(c.bytes == 0);
+}
+
+/* On the inner half of a torus the two curvatures work against each other, so there is less to gain. */
+AQR_TEST(a_lattice_on_a_torus_loses_half_of_its_error)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 200, 100, true, on_torus, &s));
+  CHECK(grid_of_quads(&c, 40, 16, true, on_torus, &m));
+  set_places(&s, &m);
+  double before = rms(&m, from_torus, is_anywhere);
+  CHECK(aqr_fit(&c, &s, &m) == AQR_OK);
+  CHECK_BELOW(rms(&m, from_torus, is_anywhere) / before, 0.45);
+  aqr_polygon_mesh_free(&c, &m);
+  free_surface(&s);
+  CHECK(c.bytes == 0);
+}
+
+static aqr_vertex on_dome(double s, double t)
+{
+  vec3 p = v3(s, t, 2 * s * (1 - s) * t * (1 - t));
+  vec3 n = v3_unit(v3(-2 * (1 - 2 * s) * t * (1 - t), -2 * s * (1 - s) * (1 - 2 * t), 1));
+  return (aqr_vertex){ .position = p, .normal = n, .size = 0.1 };
+}
+
+AQR_TEST(vertices_of_the_boundary_do_not_move)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 60, 60, false, on_dome, &s));
+  CHECK(grid_of_quads(&c, 7, 7, false, on_dome, &m));
+  set_places(&s, &m);
+  aqr_vertex* old = malloc(m.n_vertices * sizeof *old);
+  memcpy(old, m.vertices, m.n_vertices * sizeof *old);
+  CHECK(aqr_fit(&c, &s, &m) == AQR_OK);
+  for (size_t v = 0; v < m.n_vertices; v++)
+  {
+    double moved = v3_norm(v3_sub(m.vertices[v].position, old[v].position));
+    CHECK(aqr_pm_on_border(&m, (aqr_index)v) ? moved == 0 : moved > 1e-5 && moved < 0.02);
+  }
+  free(old);
+  aqr_polygon_mesh_free(&c, &m);
+  free_surface(&s);
+  CHECK(c.bytes == 0);
+}
+
+/* A strip folded back over itself, its two sheets a hundredth apart. */
+static aqr_vertex on_fold(double s, double t)
+{
+  double z = s < 0.5 ? 0 : 0.01, x = s < 0.5 ? 2 * s : 2 - 2 * s;
+  return (aqr_vertex){ .position = v3(x, t, z), .normal = v3(0, 0, s < 0.5 ? 1 : -1), .size = 0.1 };
+}
+
+AQR_TEST(the_closest_point_stays_on_its_sheet)
+{
+  aqr_context c = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 41, 20, false, on_fold, &s));
+  for (aqr_index f = 0; f < s.n_faces; f++)
+  {
+    vec3 a = v3_load(s.points + 3 * (size_t)s.corner[3 * f]);
+    vec3 b = v3_load(s.points + 3 * (size_t)s.corner[3 * f + 1]);
+    vec3 d = v3_load(s.points + 3 * (size_t)s.corner[3 * f + 2]);
+    if (a.z > 0 || b.z > 0 || d.z > 0 || a.x > 0.6 || b.x > 0.6)
+      continue;
+    vec3 p = v3(a.x + 0.1, fmin(1, a.y + 0.07), 0.009); /* nearer to the other sheet */
+    aqr_closest r = aqr_closest_near(&s, f, p, 1000, false);
+    CHECK(r.position.z == 0);
+    CHECK(fabs(r.position.x - p.x) < 1e-12 && fabs(r.position.y - p.y) < 1e-12);
+    vec3 q = aqr_place_position(&s, &r.place);
+    CHECK(v3_norm(v3_sub(q, r.position)) < 1e-12);
+  }
+  free_surface(&s);
+}
+
+static void halves(void* user, size_t count, size_t grain, void (*body)(void*, size_t, size_t), void* data)
+{
+  (void)user;
+  (void)grain;
+  body(data, count / 2, count);
+  body(data, 0, count / 2);
+}
+
+AQR_TEST(the_fit_does_not_depend_on_how_loops_are_divided)
+{
+  aqr_context c = { 0 }, d = { .hooks = { .parallel_for = halves } };
+  aqr_polygon_mesh m = { 0 }, n = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 100, 50, true, on_torus, &s));
+  CHECK(grid_of_quads(&c, 20, 10, true, on_torus, &m) && grid_of_quads(&d, 20, 10, true, on_torus, &n));
+  set_places(&s, &m);
+  set_places(&s, &n);
+  CHECK(aqr_fit(&c, &s, &m) == AQR_OK && aqr_fit(&d, &s, &n) == AQR_OK);
+  for (size_t v = 0; v < m.n_vertices; v++)
+    CHECK(memcmp(&m.vertices[v].position, &n.vertices[v].position, sizeof(vec3)) == 0);
+  aqr_polygon_mesh_free(&c, &m);
+  aqr_polygon_mesh_free(&d, &n);
+  free_surface(&s);
+}
+
+AQR_TEST_MAIN
