@@ -1,0 +1,249 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tests of aqr-remesh as a user meets it.
+
+usage: test_program.py PROGRAM NO_NETWORK_LIBRARY [unittest arguments]
+
+Each test is named after what would have gone wrong."""
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, NO_NETWORK = sys.argv[1:3]
+
+
+def write_torus(path, around=80, across=40, triangles=None):
+    """An ASCII .ply of a torus."""
+    points, faces = [], []
+    for i in range(around):
+        for j in range(across):
+            u, v = 2 * math.pi * i / around, 2 * math.pi * j / across
+            points.append(((3 + math.cos(v)) * math.cos(u), (3 + math.cos(v)) * math.sin(u), math.sin(v)))
+            a, b = i * across + j, (i + 1) % around * across + j
+            c, d = (i + 1) % around * across + (j + 1) % across, i * across + (j + 1) % across
+            faces += [(a, b, c), (a, c, d)]
+    write_ply(path, points, faces)
+
+
+def write_ply(path, points, faces):
+    with open(path, "w") as f:
+        f.write("ply\nformat ascii 1.0\nelement vertex %d\n" % len(points))
+        f.write("property double x\nproperty double y\nproperty double z\n")
+        f.write("element face %d\nproperty list uchar int vertex_indices\nend_header\n" % len(faces))
+        f.writelines("%.17g %.17g %.17g\n" % p for p in points)
+        f.writelines("%d %s\n" % (len(face), " ".join(map(str, face))) for face in faces)
+
+
+class Program(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.torus = self.path("torus.ply")
+        write_torus(self.torus)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w") as f:
+            f.write(text)
+        return self.path(name)
+
+    def run_program(self, *arguments, **more):
+        environment = dict(os.environ, **more)
+        for name in [k for k, v in more.items() if v is None]:
+            del environment[name]
+        return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, env=environment, timeout=120)
+
+    def expect_failure(self, status, words, *arguments, **more):
+        """One line on stderr with these words, this status, and no file made or touched."""
+        before = self.snapshot()
+        run = self.run_program(*arguments, **more)
+        self.assertEqual(run.returncode, status, run.stderr)
+        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+        self.assertTrue(run.stderr.startswith("aqr-remesh: "), run.stderr)
+        for word in words:
+            self.assertIn(word, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertEqual(before, self.snapshot())
+
+    def snapshot(self):
+        return {e.name: (e.stat().st_mtime_ns, e.stat().st_size) for e in os.scandir(self.folder.name)}
+
+    def faces_of(self, path):
+        """Number of points and the faces of a .obj file."""
+        points, faces = 0, []
+        with open(path) as f:
+            for line in f:
+                if line.startswith("v "):
+                    points += 1
+                elif line.startswith("f "):
+                    faces.append([int(word.split("/")[0]) - 1 for word in line.split()[1:]])
+        return points, faces
+
+    def test_target_is_met_and_mesh_is_closed(self):
+        run = self.run_program(self.torus, self.path("out.obj"), "--points", "600")
+        self.assertEqual((run.returncode, run.stderr, run.stdout), (0, "", ""))
+        points, faces = self.faces_of(self.path("out.obj"))
+        self.assertLessEqual(abs(points - 600), 30)
+        half = {(f[i], f[(i + 1) % len(f)]) for f in faces for i in range(len(f))}
+        self.assertEqual(len(half), sum(map(len, faces)))
+        self.assertTrue(all((b, a) in half for a, b in half))
+        self.assertEqual(points - len(half) // 2 + len(faces), 0)
+        self.assertGreater(sum(len(f) == 4 for f in faces) / len(faces), 0.72)
+
+    def test_every_format_is_written_and_read(self):
+        for extension in ("ply", "obj", "stl", "vtk", "vtp"):
+            middle = self.path("middle." + extension)
+            run = self.run_program(self.torus, middle, "--tolerance", "0.001")
+            self.assertEqual((run.returncode, run.stderr), (0, ""), extension)
+            run = self.run_program(middle, self.path("again.obj"), "--tolerance", "0.01")
+            self.assertEqual(run.returncode, 0, extension + run.stderr)
+            self.assertGreater(len(self.faces_of(self.path("again.obj"))[1]), 20, extension)
+
+    def test_equal_bytes_from_repeated_runs_and_any_threads(self):
+        results = []
+        for threads in ("0", "1", "1", "3"):
+            out, lines = self.path("out.vtp"), self.path("lines.vtp")
+            run = self.run_program(self.torus, out, "--lines", lines, "--threads", threads)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            results.append(open(out, "rb").read() + open(lines, "rb").read())
+        self.assertEqual(len(set(results)), 1)
+
+    def test_ports_and_report_are_written(self):
+        names = {name: self.path(name + ".vtp") for name in ("lines", "directions", "confidence")}
+        arguments = [word for name, file in names.items() for word in ("--" + name, file)]
+        run = self.run_program(self.torus, self.path("out.vtp"), "--report", self.path("r.json"), *arguments)
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        for name, array in (("lines", "LineType"), ("directions", "MinDirection"), ("confidence", "Confidence")):
+            with open(names[name], "rb") as f:
+                self.assertIn(('Name="%s"' % array).encode(), f.read())
+        report = json.load(open(self.path("r.json")))
+        self.assertEqual(report["warnings"], [])
+        self.assertGreater(report["counts"]["lines"], 10)
+        self.assertGreater(report["counts"]["points"], 100)
+        self.assertGreater(report["peak_bytes_of_process"], 1e6)
+        self.assertGreaterEqual(len(report["stages"]), 5)
+        for stage in report["stages"]:
+            self.assertGreaterEqual(stage["seconds"], 0)
+            self.assertGreaterEqual(stage["peak_bytes"], stage["end_bytes"])
+
+    def test_defects_are_warned_of_once_in_one_line(self):
+        write_ply(self.path("flat.ply"), [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (1, 3, 2), (0, 0, 1)])
+        run = self.run_program(self.path("flat.ply"), self.path("out.obj"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(run.stderr.count("\n"), 1)
+        self.assertIn("warning", run.stderr)
+        self.assertIn("1 degenerate", run.stderr)
+
+    def test_wrong_usage_is_refused(self):
+        out = self.path("out.vtp")
+        self.expect_failure(2, ["INPUT"])
+        self.expect_failure(2, ["OUTPUT"], self.torus)
+        self.expect_failure(2, ["unexpected"], self.torus, out, "more")
+        self.expect_failure(2, ["--frobnicate"], self.torus, out, "--frobnicate")
+        self.expect_failure(2, ["--points", "needs a value"], self.torus, out, "--points")
+        self.expect_failure(2, ["--points", "whole number"], self.torus, out, "--points", "many")
+        self.expect_failure(2, ["--points", "outside"], self.torus, out, "--points", "3")
+        self.expect_failure(2, ["--tolerance", "number"], self.torus, out, "--tolerance", "nan")
+        self.expect_failure(2, ["--tolerance", "outside"], self.torus, out, "--tolerance", "0.5")
+
+    def test_unreadable_inputs_are_named(self):
+        out = self.write("out.vtp", "keep me")
+        self.expect_failure(1, ["nowhere.ply", "No such file"], self.path("nowhere.ply"), out)
+        self.expect_failure(1, ["folder"], self.folder.name, out)
+        self.expect_failure(1, ["torus.xyz", "extensions"], self.write("torus.xyz", "0"), out)
+        for extension in ("ply", "obj", "stl", "vtk", "vtp"):
+            file = self.write("empty." + extension, "")
+            self.expect_failure(1, [file, "empty"], file, out)
+            file = self.write("garbage." + extension, "This is no surface.\n")
+            self.expect_failure(1, [file], file, out)
+        whole = open(self.torus).read()
+        file = self.write("short.ply", whole[: len(whole) // 3])
+        self.expect_failure(1, [file], file, out)
+
+    def test_unusable_surfaces_are_named(self):
+        out = self.write("out.vtp", "keep me")
+        square = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]
+        cases = {
+            "nothing": ([], []),
+            "points": (square, []),
+            "wild": (square, [(0, 1, 9)]),
+            "wild_quad": (square, [(0, 1, 3, 9)]),
+            "coincident": ([(1, 2, 3)] * 4, [(0, 1, 2), (1, 3, 2)]),
+            "nan": (square[:3] + [(math.nan, 1, 0)], [(0, 1, 2), (1, 3, 2)]),
+            "infinite": (square[:3] + [(math.inf, 1, 0)], [(0, 1, 2), (1, 3, 2)]),
+        }
+        for name, (points, faces) in cases.items():
+            file = self.path(name + ".ply")
+            write_ply(file, points, faces)
+            self.expect_failure(1, [file], file, out)
+        self.expect_failure(1, [self.torus, "nowhere"], self.torus, out, "--density-array", "nowhere")
+
+    def test_unwritable_outputs_are_named_before_computing(self):
+        out = self.path("out.vtp")
+        self.expect_failure(1, ["out.xyz"], self.torus, self.path("out.xyz"))
+        self.expect_failure(1, ["nowhere", "folder"], self.torus, self.path("nowhere/out.vtp"))
+        self.expect_failure(1, ["lines.ply"], self.torus, out, "--lines", self.path("lines.ply"))
+        self.expect_failure(1, ["r.txt"], self.torus, out, "--report", self.path("r.txt"))
+        self.expect_failure(1, ["p.jpg"], self.torus, out, "--picture", self.path("p.jpg"))
+
+    def test_no_display_is_said_before_computing(self):
+        self.expect_failure(
+            1, ["p.png", "display"], self.torus, self.path("out.vtp"), "--picture", self.path("p.png"), DISPLAY=None
+        )
+
+    @unittest.skipUnless(os.environ.get("DISPLAY"), "no display")
+    def test_picture_shows_something(self):
+        picture = self.path("p.png")
+        run = self.run_program(self.torus, self.path("out.vtp"), "--picture", picture)
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        with open(picture, "rb") as f:
+            data = f.read()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertGreater(len(data), 10000)
+
+    def test_help_names_unit_and_default_of_every_option(self):
+        run = self.run_program("--help")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        entries = re.split(r"\n  (?=--)", run.stdout)[1:]
+        self.assertGreaterEqual(len(entries), 20)
+        for entry in entries:
+            if not entry.startswith(("--help", "--version")):
+                self.assertIn("default", " ".join(entry.split()), entry)
+        self.assertLess(max(map(len, run.stdout.splitlines())), 100)
+
+    def test_every_option_is_heard(self):
+        def mesh(*options):
+            run = self.run_program(self.torus, self.path("out.obj"), "--tolerance", "0.002", *options)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            return open(self.path("out.obj")).read()
+
+        plain = mesh()
+        self.assertEqual(mesh("--seed", "0", "--threads", "2", "--smoothing", "5"), plain)
+        for options in (["--tolerance", "0.004"], ["--largest-spacing", "0.02"], ["--curvature-radius", "0.1"]):
+            self.assertNotEqual(mesh(*options), plain, options)
+        for options in (
+            ["--no-features", "--feature-angle", "20", "--no-boundary"],
+            ["--no-convex", "--largest-valence", "6", "--no-topology"],
+            ["--confidence-angle", "20"],
+        ):
+            mesh(*options)
+
+    def test_no_network_is_used(self):
+        run = self.run_program(self.torus, self.path("out.vtp"), LD_PRELOAD=NO_NETWORK)
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        probe = "import socket; socket.socket(socket.AF_INET)"
+        run = subprocess.run(
+            [sys.executable, "-c", probe], env=dict(os.environ, LD_PRELOAD=NO_NETWORK), capture_output=True
+        )
+        self.assertIn(b"network", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
