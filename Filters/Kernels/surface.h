@@ -16,18 +16,18 @@
 typedef struct aqr_surface
 {
   size_t n_points, n_faces;
-  size_t n_clean;    /* cleaned points before sectors were split off (and before nothing else) */
-  double* points;    /* 3 * n_points; bounding box diagonal 1, centred at 0 */
-  aqr_index* corner; /* 3 * n_faces: point at the start of each half-edge */
-  aqr_index* twin;   /* 3 * n_faces: AQR_NONE at a boundary, AQR_SEAM | h over a seam, else h */
-  aqr_index*
-    fan; /* n_points: an outgoing half-edge, the clockwise-most where the point has a border or
-            seam, so that following aqr_next_around() from it meets every face around the point */
-  aqr_index* clean; /* n_points: the cleaned point it is a sector of, < n_clean; several sectors may
-                       share one */
+  size_t n_clean;     /* cleaned points before sectors were split off (and before nothing else) */
+  double* points;     /* 3 * n_points; bounding box diagonal 1, centred at 0 */
+  aqr_index* corner;  /* 3 * n_faces: point at the start of each half-edge */
+  aqr_index* twin;    /* 3 * n_faces: AQR_NONE at a boundary, AQR_SEAM | h over a seam, else h */
+  aqr_index* fan;     /* n_points: an outgoing half-edge, the clockwise-most where the point has a border or
+                         seam, so that following aqr_next_around() from it meets every face around the point */
+  aqr_index* clean;   /* n_points: the cleaned point it is a sector of, < n_clean; several sectors may
+                         share one */
   aqr_origin* origin; /* n_clean: where the cleaned point lies on the input */
   aqr_index* source;  /* n_faces: input triangle */
-  vec3 centre;        /* input = centre + diagonal * point */
+  size_t faces_held, points_held, origins_held; /* what the arrays per face, per point, and `origin` have room for */
+  vec3 centre;                                  /* input = centre + diagonal * point */
   double diagonal;
 } aqr_surface;
 
@@ -90,22 +90,28 @@ static inline vec3 aqr_face_cross(const aqr_surface* s, aqr_index f)
   return v3_cross(v3_sub(b, a), v3_sub(c, a));
 }
 
-/* Cleans the input (see the counts in aqr_report): joins exactly coincident points, drops
- * degenerate and duplicate triangles, orients, cuts non-manifold edges and points apart, halves
- * edges longer than longest_edge (a fraction of the diagonal). No seams yet. */
-aqr_status aqr_surface_build(aqr_context* c,
-  const aqr_input* input,
-  double longest_edge,
-  aqr_surface* s,
-  aqr_report* report);
+/* Cleans the input (see the counts in aqr_report): joins exactly coincident points, drops degenerate and duplicate
+ * triangles, orients, cuts non-manifold edges and points apart, halves edges longer than longest_edge (a fraction of
+ * the diagonal). No seams yet. */
+aqr_status aqr_surface_build(
+  aqr_context* c, const aqr_input* input, double longest_edge, aqr_surface* s, aqr_report* report);
 
-/* Cuts the surface open along the half-edges marked in is_crease (3 * n_faces, both sides marked):
- * twins become seams and points are split into sectors. */
+/* Cuts the surface open along the half-edges marked in is_crease (3 * n_faces, both sides marked): twins become seams
+ * and points are split into sectors. */
 aqr_status aqr_surface_cut(aqr_context* c, aqr_surface* s, const uint8_t* is_crease);
+
+/* Halves edges longer than longest_edge at their middle, longest first, with the triangles beside them (paper 3.2). */
+aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edge, size_t* added);
 
 void aqr_surface_free(aqr_context* c, aqr_surface* s);
 
 /* Deep copy, so that a change of feature options need not clean the input again. */
 aqr_status aqr_surface_copy(aqr_context* c, const aqr_surface* from, aqr_surface* to);
+
+/* Room for more; false when out of memory, the surface then stays as it is. Origins have room of their own, since
+ * sectors have none. */
+bool aqr_surface_reserve_faces(aqr_context* c, aqr_surface* s, size_t need);
+bool aqr_surface_reserve_points(aqr_context* c, aqr_surface* s, size_t need);
+bool aqr_surface_reserve_origins(aqr_context* c, aqr_surface* s, size_t need);
 
 #endif

@@ -1,0 +1,515 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The working surface: any triangles in, oriented manifold triangles out. Paper 3.2 for the halving of long edges. */
+#include "surface.h"
+
+#include <string.h>
+
+/* ---- reading the input ---- */
+
+typedef struct builder
+{
+  aqr_context* c;
+  const aqr_input* in;
+  aqr_surface* s;
+  aqr_report* report;
+  aqr_index* weld; /* per input point: the input point it was joined to */
+} builder;
+
+static vec3 input_point(const aqr_input* in, size_t i)
+{
+  return in->points_f
+           ? v3((double)in->points_f[3 * i], (double)in->points_f[3 * i + 1], (double)in->points_f[3 * i + 2])
+           : v3_load(in->points_d + 3 * i);
+}
+
+static aqr_status check_input(builder* b)
+{
+  const aqr_input* in = b->in;
+  if (in->number_of_points == 0 || in->number_of_triangles == 0)
+    return AQR_EMPTY_INPUT;
+  if (in->number_of_points >= AQR_SEAM / 3 || in->number_of_triangles >= AQR_SEAM / 6)
+    return AQR_TOO_LARGE;
+  for (size_t i = 0; i < 3 * in->number_of_triangles; i++)
+  {
+    if (i % (1 << 20) == 0 && !aqr_step(b->c, 0))
+      return AQR_CANCELLED;
+    if (in->triangles[i] < 0 || (size_t)in->triangles[i] >= in->number_of_points)
+      return AQR_INDEX_OUT_OF_RANGE;
+    vec3 p = input_point(in, (size_t)in->triangles[i]);
+    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
+      return AQR_NON_FINITE_POINT;
+  }
+  return AQR_OK;
+}
+
+static uint64_t mix(uint64_t h, uint64_t x)
+{
+  h = (h ^ x) * 0x9e3779b97f4a7c15u;
+  return h ^ (h >> 29);
+}
+
+static uint64_t hash_point(vec3 p)
+{
+  uint64_t bits[3];
+  double q[3] = { p.x + 0.0, p.y + 0.0, p.z + 0.0 }; /* one zero, not two */
+  memcpy(bits, q, sizeof bits);
+  return mix(mix(mix(0, bits[0]), bits[1]), bits[2]);
+}
+
+static size_t table_size(size_t n)
+{
+  size_t size = 16;
+  while (size < 2 * n)
+    size *= 2;
+  return size;
+}
+
+static bool same_point(vec3 a, vec3 b)
+{
+  return !(a.x < b.x || a.x > b.x || a.y < b.y || a.y > b.y || a.z < b.z || a.z > b.z);
+}
+
+/* Joins points with the same coordinates to the first of them; points that no triangle uses stay AQR_NONE. */
+static aqr_status weld_points(builder* b)
+{
+  const aqr_input* in = b->in;
+  size_t n = in->number_of_points, size = table_size(n), used = 0;
+  aqr_index* table = AQR_NEW(b->c, aqr_index, size);
+  b->weld = AQR_NEW(b->c, aqr_index, n);
+  if (!table || !b->weld)
+  {
+    AQR_DROP(b->c, table, size);
+    return AQR_OUT_OF_MEMORY;
+  }
+  memset(table, 0xff, size * sizeof *table);
+  memset(b->weld, 0xff, n * sizeof *b->weld);
+  for (size_t i = 0; i < 3 * in->number_of_triangles; i++)
+  {
+    aqr_index v = (aqr_index)in->triangles[i];
+    if (b->weld[v] != AQR_NONE)
+      continue;
+    used++;
+    vec3 p = input_point(in, v);
+    size_t at = hash_point(p) & (size - 1);
+    while (table[at] != AQR_NONE && !same_point(input_point(in, table[at]), p))
+      at = (at + 1) & (size - 1);
+    if (table[at] == AQR_NONE)
+      table[at] = v;
+    else
+      b->report->merged_points++;
+    b->weld[v] = table[at];
+  }
+  b->report->unused_points = n - used;
+  AQR_DROP(b->c, table, size);
+  return AQR_OK;
+}
+
+static void sort3(aqr_index* k)
+{
+  for (unsigned i = 0; i < 3; i++)
+  {
+    unsigned j = i % 2;
+    if (k[j] > k[j + 1])
+    {
+      aqr_index swap = k[j];
+      k[j] = k[j + 1];
+      k[j + 1] = swap;
+    }
+  }
+}
+
+/* Keeps the triangles with three different points, each set of points once; corners are input points still. */
+static aqr_status keep_triangles(builder* b)
+{
+  const aqr_input* in = b->in;
+  aqr_surface* s = b->s;
+  size_t n = in->number_of_triangles, size = table_size(n);
+  aqr_index* table = AQR_NEW(b->c, aqr_index, size);
+  aqr_status status = AQR_OK;
+  AQR_REQUIRE(table && aqr_surface_reserve_faces(b->c, s, n), AQR_OUT_OF_MEMORY);
+  memset(table, 0xff, size * sizeof *table);
+  for (size_t i = 0; i < n; i++)
+  {
+    if (i % (1 << 18) == 0)
+      AQR_REQUIRE(aqr_step(b->c, 0.2), AQR_CANCELLED);
+    aqr_index* corner = s->corner + 3 * s->n_faces;
+    for (unsigned k = 0; k < 3; k++)
+      corner[k] = b->weld[in->triangles[3 * i + k]];
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
+    {
+      b->report->degenerate_triangles++;
+      continue;
+    }
+    aqr_index key[3] = { corner[0], corner[1], corner[2] };
+    sort3(key);
+    size_t at = mix(mix(mix(0, key[0]), key[1]), key[2]) & (size - 1);
+    for (; table[at] != AQR_NONE; at = (at + 1) & (size - 1))
+    {
+      aqr_index other[3];
+      memcpy(other, s->corner + 3 * (size_t)table[at], sizeof other);
+      sort3(other);
+      if (memcmp(key, other, sizeof key) == 0)
+        break;
+    }
+    if (table[at] != AQR_NONE)
+    {
+      b->report->duplicate_triangles++;
+      continue;
+    }
+    table[at] = (aqr_index)s->n_faces;
+    s->source[s->n_faces++] = (aqr_index)i;
+  }
+  AQR_REQUIRE(s->n_faces > 0, AQR_DEGENERATE_INPUT);
+done:
+  AQR_DROP(b->c, table, size);
+  return status;
+}
+
+/* Numbers the points in use and scales them to a bounding box of diagonal 1 around the origin. */
+static aqr_status place_points(builder* b)
+{
+  aqr_surface* s = b->s;
+  size_t n_in = b->in->number_of_points;
+  aqr_status status = AQR_OK;
+  aqr_index* id = AQR_NEW(b->c, aqr_index, n_in);
+  AQR_REQUIRE(id, AQR_OUT_OF_MEMORY);
+  memset(id, 0xff, n_in * sizeof *id);
+  for (size_t i = 0; i < 3 * s->n_faces; i++)
+    id[s->corner[i]] = 0;
+  size_t n = 0;
+  for (size_t i = 0; i < n_in; i++)
+    if (id[i] == 0)
+      id[i] = (aqr_index)n++;
+  AQR_REQUIRE(aqr_surface_reserve_points(b->c, s, n) && aqr_surface_reserve_origins(b->c, s, n), AQR_OUT_OF_MEMORY);
+  s->n_points = n;
+  double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+  for (size_t i = 0; i < n_in; i++)
+  {
+    if (id[i] == AQR_NONE)
+      continue;
+    double* p = s->points + 3 * (size_t)id[i];
+    v3_store(p, input_point(b->in, i));
+    s->origin[id[i]] = (aqr_origin){ { (aqr_index)i, (aqr_index)i, (aqr_index)i }, { 1, 0, 0 }, AQR_NONE };
+    for (unsigned k = 0; k < 3; k++)
+    {
+      low[k] = fmin(low[k], p[k]);
+      high[k] = fmax(high[k], p[k]);
+    }
+  }
+  for (size_t i = 0; i < 3 * s->n_faces; i++)
+  {
+    s->corner[i] = id[s->corner[i]];
+    s->origin[s->corner[i]].triangle = s->source[i / 3];
+  }
+  /* halves and hypot, so that coordinates near the largest number do not overflow */
+  s->centre = v3(low[0] / 2 + high[0] / 2, low[1] / 2 + high[1] / 2, low[2] / 2 + high[2] / 2);
+  s->diagonal = 2 * hypot(hypot(high[0] / 2 - low[0] / 2, high[1] / 2 - low[1] / 2), high[2] / 2 - low[2] / 2);
+  AQR_REQUIRE(s->diagonal > 0 && isfinite(s->diagonal), AQR_DEGENERATE_INPUT);
+  double area = 0;
+  for (size_t i = 0; i < n; i++)
+  {
+    vec3 d = v3_sub(v3_load(s->points + 3 * i), s->centre);
+    v3_store(s->points + 3 * i, v3(d.x / s->diagonal, d.y / s->diagonal, d.z / s->diagonal));
+  }
+  for (aqr_index f = 0; f < s->n_faces; f++)
+    area = fmax(area, v3_norm(aqr_face_cross(s, f)));
+  AQR_REQUIRE(area > 1e-14, AQR_DEGENERATE_INPUT); /* of a unit box: what rounding makes of a straight line */
+done:
+  AQR_DROP(b->c, id, n_in);
+  return status;
+}
+
+/* ---- adjacency ---- */
+
+/* Half-edges of one undirected edge meet in the bucket of its smaller point. Two make neighbours, whatever their
+ * direction; more are a non-manifold edge, at which all faces are cut apart. */
+static aqr_status pair_half_edges(builder* b)
+{
+  aqr_surface* s = b->s;
+  size_t n = 3 * s->n_faces;
+  aqr_status status = AQR_OK;
+  size_t* first = AQR_NEW0(b->c, size_t, s->n_points + 2);
+  aqr_index* in_bucket = AQR_NEW(b->c, aqr_index, n);
+  AQR_REQUIRE(first && in_bucket, AQR_OUT_OF_MEMORY);
+  for (aqr_index h = 0; h < n; h++)
+  {
+    aqr_index p = aqr_from(s, h), q = aqr_to(s, h);
+    first[(p < q ? p : q) + 2]++;
+    s->twin[h] = AQR_NONE;
+  }
+  for (size_t i = 1; i <= s->n_points; i++)
+    first[i + 1] += first[i];
+  for (aqr_index h = 0; h < n; h++)
+  {
+    aqr_index p = aqr_from(s, h), q = aqr_to(s, h);
+    in_bucket[first[(p < q ? p : q) + 1]++] = h;
+  }
+  for (size_t v = 0; v < s->n_points; v++)
+  {
+    if (v % 65536 == 0)
+      AQR_REQUIRE(aqr_step(b->c, 0.4), AQR_CANCELLED);
+    for (size_t i = first[v]; i < first[v + 1]; i++)
+    {
+      aqr_index h = in_bucket[i];
+      if (h == AQR_NONE)
+        continue;
+      aqr_index far = aqr_from(s, h) == v ? aqr_to(s, h) : aqr_from(s, h), other = AQR_NONE;
+      unsigned others = 0;
+      for (size_t j = i + 1; j < first[v + 1]; j++)
+      {
+        aqr_index k = in_bucket[j];
+        if (k == AQR_NONE || (aqr_from(s, k) != far && aqr_to(s, k) != far))
+          continue;
+        other = k;
+        others++;
+        in_bucket[j] = AQR_NONE;
+      }
+      b->report->split_edges += others > 1;
+      if (others == 1)
+      {
+        s->twin[h] = other;
+        s->twin[other] = h;
+      }
+    }
+  }
+done:
+  AQR_DROP(b->c, first, s->n_points + 2);
+  AQR_DROP(b->c, in_bucket, n);
+  return status;
+}
+
+static bool runs_against(const aqr_surface* s, aqr_index h, aqr_index t)
+{
+  return aqr_from(s, h) == aqr_to(s, t);
+}
+
+/* Half-edge h after its face was turned over. */
+static aqr_index turned(aqr_index h, const uint8_t* turn)
+{
+  static const aqr_index to[3] = { 2, 1, 0 };
+  return turn[h / 3] ? 3 * (h / 3) + to[h % 3] : h;
+}
+
+/* Turns faces so that neighbours agree; in each component the side that most faces had wins. Edges over which no choice
+ * agrees (Moebius) are cut. */
+static aqr_status orient(builder* b)
+{
+  aqr_surface* s = b->s;
+  size_t n = s->n_faces;
+  aqr_status status = AQR_OK;
+  uint8_t *turn = AQR_NEW0(b->c, uint8_t, n), *seen = AQR_NEW0(b->c, uint8_t, n);
+  aqr_index *queue = AQR_NEW(b->c, aqr_index, n), *twin = NULL;
+  AQR_REQUIRE(turn && seen && queue, AQR_OUT_OF_MEMORY);
+  bool any = false;
+  for (aqr_index start = 0; start < n; start++)
+  {
+    if (seen[start])
+      continue;
+    size_t head = 0, tail = 0, n_turned = 0;
+    seen[start] = 1;
+    queue[tail++] = start;
+    while (head < tail)
+    {
+      aqr_index f = queue[head++];
+      if (head % 65536 == 0)
+        AQR_REQUIRE(aqr_step(b->c, 0.5), AQR_CANCELLED);
+      n_turned += turn[f];
+      for (unsigned k = 0; k < 3; k++)
+      {
+        aqr_index h = 3 * f + k, t = s->twin[h];
+        if (t == AQR_NONE)
+          continue;
+        uint8_t wanted = turn[f] ^ (uint8_t)!runs_against(s, h, t);
+        if (!seen[t / 3])
+        {
+          seen[t / 3] = 1;
+          turn[t / 3] = wanted;
+          queue[tail++] = t / 3;
+        }
+        else if (turn[t / 3] != wanted)
+        {
+          s->twin[h] = s->twin[t] = AQR_NONE;
+          b->report->unorientable_edges++;
+        }
+      }
+    }
+    b->report->components++;
+    bool other = 2 * n_turned > tail;
+    for (size_t i = 0; i < tail; i++)
+    {
+      turn[queue[i]] ^= other;
+      b->report->flipped_triangles += turn[queue[i]];
+      any |= turn[queue[i]];
+    }
+  }
+  if (any)
+  {
+    twin = AQR_NEW(b->c, aqr_index, 3 * n);
+    AQR_REQUIRE(twin, AQR_OUT_OF_MEMORY);
+    for (aqr_index h = 0; h < 3 * n; h++)
+      twin[turned(h, turn)] = s->twin[h] == AQR_NONE ? AQR_NONE : turned(s->twin[h], turn);
+    for (aqr_index f = 0; f < n; f++)
+      if (turn[f])
+      {
+        aqr_index swap = s->corner[3 * f + 1];
+        s->corner[3 * f + 1] = s->corner[3 * f + 2];
+        s->corner[3 * f + 2] = swap;
+      }
+    memcpy(s->twin, twin, 3 * n * sizeof *twin);
+  }
+done:
+  AQR_DROP(b->c, twin, 3 * n);
+  AQR_DROP(b->c, turn, n);
+  AQR_DROP(b->c, seen, n);
+  AQR_DROP(b->c, queue, n);
+  return status;
+}
+
+/* ---- fans ---- */
+
+/* The points that split_fans added: copies of old points, in order. */
+typedef struct copies
+{
+  aqr_index* of;
+  size_t n, capacity;
+} copies;
+
+/* Gives every fan of faces around a point a point of its own (the first keeps it), and every point its clockwise-most
+ * outgoing half-edge. Coordinates are copied, what else belongs to a point is the caller's. */
+static aqr_status split_fans(aqr_context* c, aqr_surface* s, copies* added)
+{
+  size_t n = 3 * s->n_faces, old = s->n_points;
+  aqr_status status = AQR_OK;
+  uint8_t *seen = AQR_NEW0(c, uint8_t, n), *claimed = AQR_NEW0(c, uint8_t, old);
+  aqr_index* start_of = NULL; /* of the copies */
+  size_t start_capacity = 0;
+  AQR_REQUIRE(seen && claimed, AQR_OUT_OF_MEMORY);
+  for (aqr_index h = 0; h < n; h++)
+  {
+    if (h % 65536 == 0)
+      AQR_REQUIRE(aqr_step(c, 0.7), AQR_CANCELLED);
+    if (seen[h])
+      continue;
+    aqr_index v = s->corner[h], start = h, id = v;
+    for (aqr_index t = aqr_twin(s, start); t != AQR_NONE; t = aqr_twin(s, start))
+    {
+      start = aqr_next(t);
+      if (start == h)
+        break;
+    }
+    if (claimed[v])
+    {
+      AQR_REQUIRE(AQR_RESERVE(c, added->of, added->capacity, added->n + 1) &&
+                    AQR_RESERVE(c, start_of, start_capacity, added->n + 1),
+        AQR_OUT_OF_MEMORY);
+      start_of[added->n] = start;
+      id = (aqr_index)(old + added->n);
+      added->of[added->n++] = v;
+    }
+    else
+    {
+      claimed[v] = 1;
+      s->fan[v] = start;
+    }
+    aqr_index k = start;
+    do
+    {
+      seen[k] = 1;
+      s->corner[k] = id;
+      k = aqr_next_around(s, k);
+    } while (k != AQR_NONE && k != start);
+  }
+  if (added->n)
+  {
+    AQR_REQUIRE(old + added->n < AQR_SEAM, AQR_TOO_LARGE);
+    AQR_REQUIRE(aqr_surface_reserve_points(c, s, old + added->n), AQR_OUT_OF_MEMORY);
+    for (size_t i = 0; i < added->n; i++)
+    {
+      memcpy(s->points + 3 * (old + i), s->points + 3 * (size_t)added->of[i], 3 * sizeof *s->points);
+      s->fan[old + i] = start_of[i];
+    }
+    s->n_points = old + added->n;
+  }
+done:
+  AQR_DROP(c, seen, n);
+  AQR_DROP(c, claimed, old);
+  AQR_DROP(c, start_of, start_capacity);
+  return status;
+}
+
+static aqr_status split_points(builder* b)
+{
+  aqr_surface* s = b->s;
+  copies added = { 0 };
+  aqr_status status = AQR_OK;
+  size_t old = s->n_points;
+  AQR_TRY(split_fans(b->c, s, &added));
+  b->report->split_points = added.n;
+  AQR_REQUIRE(aqr_surface_reserve_origins(b->c, s, s->n_points), AQR_OUT_OF_MEMORY);
+  for (size_t i = 0; i < added.n; i++)
+    s->origin[old + i] = s->origin[added.of[i]];
+done:
+  AQR_DROP(b->c, added.of, added.capacity);
+  return status;
+}
+
+static aqr_status count_loops(builder* b)
+{
+  const aqr_surface* s = b->s;
+  size_t n = 3 * s->n_faces;
+  uint8_t* seen = AQR_NEW0(b->c, uint8_t, n);
+  if (!seen)
+    return AQR_OUT_OF_MEMORY;
+  for (aqr_index h = 0; h < n; h++)
+  {
+    if (seen[h] || !aqr_is_boundary(s, h))
+      continue;
+    b->report->boundary_loops++;
+    /* every point has one fan: the border goes on along the clockwise-most half-edge of the next point */
+    for (aqr_index k = h; !seen[k]; k = s->fan[aqr_to(s, k)])
+      seen[k] = 1;
+  }
+  AQR_DROP(b->c, seen, n);
+  return AQR_OK;
+}
+
+aqr_status aqr_surface_cut(aqr_context* c, aqr_surface* s, const uint8_t* is_crease)
+{
+  copies added = { 0 };
+  aqr_status status = AQR_OK;
+  size_t old = s->n_points;
+  for (aqr_index h = 0; h < 3 * s->n_faces; h++)
+    if (is_crease[h] && s->twin[h] != AQR_NONE)
+      s->twin[h] |= AQR_SEAM;
+  AQR_TRY(split_fans(c, s, &added));
+  for (size_t i = 0; i < added.n; i++)
+    s->clean[old + i] = s->clean[added.of[i]];
+done:
+  AQR_DROP(c, added.of, added.capacity);
+  return status;
+}
+
+aqr_status aqr_surface_build(
+  aqr_context* c, const aqr_input* input, double longest_edge, aqr_surface* s, aqr_report* report)
+{
+  memset(s, 0, sizeof *s);
+  builder b = { .c = c, .in = input, .s = s, .report = report };
+  aqr_status status = AQR_OK;
+  AQR_TRY(check_input(&b));
+  AQR_TRY(weld_points(&b));
+  AQR_TRY(keep_triangles(&b));
+  AQR_TRY(place_points(&b));
+  AQR_TRY(pair_half_edges(&b));
+  AQR_TRY(orient(&b));
+  AQR_TRY(split_points(&b));
+  AQR_TRY(count_loops(&b));
+  AQR_TRY(aqr_surface_refine(c, s, longest_edge, &report->refined_points));
+  for (size_t i = 0; i < s->n_points; i++)
+    s->clean[i] = (aqr_index)i;
+  s->n_clean = s->n_points;
+done:
+  AQR_DROP(c, b.weld, input->number_of_points);
+  if (status != AQR_OK)
+    aqr_surface_free(c, s);
+  return status;
+}
