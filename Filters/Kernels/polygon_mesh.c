@@ -453,6 +453,41 @@ done:
   return status;
 }
 
+static aqr_index shifted(aqr_index i, size_t by)
+{
+  return i == AQR_NONE ? AQR_NONE : i + (aqr_index)by;
+}
+
+aqr_status aqr_pm_append_mesh(aqr_context* c, aqr_polygon_mesh* m, const aqr_polygon_mesh* added)
+{
+  size_t nv = m->n_vertices, nh = m->n_half_edges, nf = m->n_faces;
+  if (added->n_half_edges >= AQR_NONE - nh)
+    return AQR_TOO_LARGE;
+  if (!AQR_RESERVE(c, m->vertices, m->vertex_capacity, nv + added->n_vertices) ||
+      !AQR_RESERVE(c, m->half_edges, m->half_edge_capacity, nh + added->n_half_edges) ||
+      !AQR_RESERVE(c, m->edge_type, m->edge_capacity, (nh + added->n_half_edges) / 2) ||
+      !AQR_RESERVE(c, m->faces, m->face_capacity, nf + added->n_faces))
+    return AQR_OUT_OF_MEMORY;
+  for (size_t v = 0; v < added->n_vertices; v++)
+  {
+    m->vertices[nv + v] = added->vertices[v];
+    m->vertices[nv + v].out = shifted(added->vertices[v].out, nh);
+  }
+  for (size_t h = 0; h < added->n_half_edges; h++)
+  {
+    aqr_half_edge e = added->half_edges[h];
+    m->half_edges[nh + h] =
+      (aqr_half_edge){ shifted(e.next, nh), shifted(e.prev, nh), shifted(e.from, nv), shifted(e.face, nf) };
+    m->edge_type[(nh + h) / 2] = added->edge_type[h / 2];
+  }
+  for (size_t f = 0; f < added->n_faces; f++)
+    m->faces[nf + f] = shifted(added->faces[f], nh);
+  m->n_vertices += added->n_vertices;
+  m->n_half_edges += added->n_half_edges;
+  m->n_faces += added->n_faces;
+  return AQR_OK;
+}
+
 aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m)
 {
   aqr_status status = AQR_OK;

@@ -129,6 +129,8 @@ bool aqr_pm_contract(aqr_polygon_mesh* m, aqr_index h);
  */
 aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* vertices, size_t n_vertices,
   const size_t* offsets, size_t n_faces, const aqr_index* connectivity);
+/* Appends another mesh with all that is known about it. */
+aqr_status aqr_pm_append_mesh(aqr_context* c, aqr_polygon_mesh* m, const aqr_polygon_mesh* added);
 /* Forgets what was deleted; order is kept. */
 aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m);
 void aqr_polygon_mesh_free(aqr_context* c, aqr_polygon_mesh* m);

@@ -7,48 +7,6 @@
 
 #include <stdlib.h>
 
-/* A working surface whose triangles halve the quads of a grid. */
-static bool surface_of_grid(
-  aqr_context* c, size_t nu, size_t nv, bool closed, aqr_vertex (*place)(double, double), aqr_surface* s)
-{
-  aqr_polygon_mesh m = { 0 };
-  if (!grid_of_quads(c, nu, nv, closed, place, &m))
-    return false;
-  size_t quads = m.n_faces;
-  for (aqr_index f = 0; f < quads; f++)
-    if (aqr_pm_split_face(c, &m, m.faces[f], aqr_pm_next(&m, aqr_pm_next(&m, m.faces[f])), AQR_LINE_MIN) != AQR_OK)
-      return false;
-  *s = (aqr_surface){ .n_points = m.n_vertices, .n_faces = m.n_faces };
-  s->points = malloc(3 * s->n_points * sizeof(double));
-  s->corner = malloc(3 * s->n_faces * sizeof(aqr_index));
-  s->twin = malloc(3 * s->n_faces * sizeof(aqr_index));
-  aqr_index* at = malloc(m.n_half_edges * sizeof(aqr_index));
-  for (size_t v = 0; v < s->n_points; v++)
-    v3_store(s->points + 3 * v, m.vertices[v].position);
-  for (aqr_index f = 0; f < s->n_faces; f++)
-  {
-    aqr_index h = m.faces[f];
-    for (unsigned i = 0; i < 3; i++, h = aqr_pm_next(&m, h))
-      at[h] = 3 * f + i;
-  }
-  for (aqr_index h = 0; h < m.n_half_edges; h++)
-    if (aqr_pm_face(&m, h) != AQR_NONE)
-    {
-      s->corner[at[h]] = aqr_pm_from(&m, h);
-      s->twin[at[h]] = aqr_pm_face(&m, h ^ 1) == AQR_NONE ? AQR_NONE : at[h ^ 1];
-    }
-  free(at);
-  aqr_polygon_mesh_free(c, &m);
-  return true;
-}
-
-static void free_surface(aqr_surface* s)
-{
-  free(s->points);
-  free(s->corner);
-  free(s->twin);
-}
-
 /* Puts every vertex's place on the nearest face, found by looking at all of them. */
 static void set_places(const aqr_surface* s, aqr_polygon_mesh* m)
 {

@@ -4,6 +4,7 @@
 #define AQR_TEST_CELLS_H
 
 #include "polygon_mesh.h"
+#include "surface.h"
 
 #include <stdlib.h>
 
@@ -64,6 +65,54 @@ static inline bool torus_of_quads(aqr_context* c, size_t nu, size_t nv, aqr_poly
 static inline bool sheet_of_quads(aqr_context* c, size_t nu, size_t nv, aqr_polygon_mesh* m)
 {
   return grid_of_quads(c, nu, nv, false, on_sheet, m);
+}
+
+/* A working surface whose triangles halve the quads of a grid. */
+static inline bool surface_of_grid(
+  aqr_context* c, size_t nu, size_t nv, bool closed, aqr_vertex (*place)(double, double), aqr_surface* s)
+{
+  aqr_polygon_mesh m = { 0 };
+  if (!grid_of_quads(c, nu, nv, closed, place, &m))
+    return false;
+  size_t quads = m.n_faces;
+  for (aqr_index f = 0; f < quads; f++)
+    if (aqr_pm_split_face(c, &m, m.faces[f], aqr_pm_next(&m, aqr_pm_next(&m, m.faces[f])), AQR_LINE_MIN) != AQR_OK)
+      return false;
+  *s = (aqr_surface){ .n_points = m.n_vertices, .n_faces = m.n_faces };
+  s->points = malloc(3 * s->n_points * sizeof(double));
+  s->corner = malloc(3 * s->n_faces * sizeof(aqr_index));
+  s->twin = malloc(3 * s->n_faces * sizeof(aqr_index));
+  s->clean = malloc(s->n_points * sizeof(aqr_index));
+  s->n_clean = s->n_points;
+  aqr_index* at = malloc(m.n_half_edges * sizeof(aqr_index));
+  for (size_t v = 0; v < s->n_points; v++)
+  {
+    v3_store(s->points + 3 * v, m.vertices[v].position);
+    s->clean[v] = (aqr_index)v;
+  }
+  for (aqr_index f = 0; f < s->n_faces; f++)
+  {
+    aqr_index h = m.faces[f];
+    for (unsigned i = 0; i < 3; i++, h = aqr_pm_next(&m, h))
+      at[h] = 3 * f + i;
+  }
+  for (aqr_index h = 0; h < m.n_half_edges; h++)
+    if (aqr_pm_face(&m, h) != AQR_NONE)
+    {
+      s->corner[at[h]] = aqr_pm_from(&m, h);
+      s->twin[at[h]] = aqr_pm_face(&m, h ^ 1) == AQR_NONE ? AQR_NONE : at[h ^ 1];
+    }
+  free(at);
+  aqr_polygon_mesh_free(c, &m);
+  return true;
+}
+
+static inline void free_surface(aqr_surface* s)
+{
+  free(s->points);
+  free(s->corner);
+  free(s->twin);
+  free(s->clean);
 }
 
 /* Random Euler operators without any regard for what makes a good mesh. */

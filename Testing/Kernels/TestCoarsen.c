@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "test.h"
+
+#include "cells.h"
+#include "coarsen.h"
+
+/* Coarsens a whole grid to about `points` vertices behind what m holds. */
+static aqr_status coarsen_grid(aqr_context* c, size_t nu, size_t nv, bool closed, aqr_vertex (*place)(double, double),
+  size_t points, aqr_polygon_mesh* m)
+{
+  aqr_surface s;
+  if (!surface_of_grid(c, nu, nv, closed, place, &s))
+    return AQR_INTERNAL;
+  aqr_index* faces = malloc(s.n_faces * sizeof *faces);
+  aqr_field field = { .normal = malloc(3 * s.n_points * sizeof(double)) };
+  for (aqr_index f = 0; f < s.n_faces; f++)
+    faces[f] = f;
+  for (size_t f = 0; f < s.n_faces; f++)
+    for (unsigned i = 0; i < 3; i++)
+      v3_store(field.normal + 3 * (size_t)s.corner[3 * f + i], v3_unit(aqr_face_cross(&s, (aqr_index)f)));
+  aqr_status status = aqr_coarsen_component(c, &s, &field, faces, s.n_faces, points, m);
+  free(faces);
+  free(field.normal);
+  free_surface(&s);
+  return status;
+}
+
+AQR_TEST(a_coarsened_torus_keeps_its_handle_and_its_shape)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(coarsen_grid(&c, 40, 20, true, on_torus, 80, &m) == AQR_OK);
+  CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m) && aqr_pm_euler(&m) == 0);
+  CHECK(m.n_vertices == 80 && m.n_faces == 160);
+  double farthest = 0;
+  for (aqr_index h = 0; h < m.n_half_edges; h += 2)
+  {
+    vec3 q = v3_scale(v3_add(aqr_pm_point(&m, aqr_pm_from(&m, h)), aqr_pm_point(&m, aqr_pm_to(&m, h))), 0.5);
+    farthest = fmax(farthest, fabs(hypot(hypot(q.x, q.y) - 1, q.z) - 0.4));
+  }
+  CHECK_BELOW(farthest, 0.2);
+  aqr_polygon_mesh_free(&c, &m);
+  CHECK(c.bytes == 0);
+}
+
+AQR_TEST(coarsening_to_almost_nothing_stops_at_a_valid_mesh)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(coarsen_grid(&c, 20, 10, true, on_torus, 1, &m) == AQR_OK);
+  CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m) && aqr_pm_euler(&m) == 0);
+  CHECK(m.n_vertices < 100);
+  aqr_polygon_mesh_free(&c, &m);
+}
+
+AQR_TEST(a_coarsened_sheet_keeps_its_four_corners)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(coarsen_grid(&c, 20, 20, false, on_sheet, 4, &m) == AQR_OK);
+  CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m) && aqr_pm_euler(&m) == 1);
+  CHECK(m.n_vertices == 4 && m.n_faces == 2);
+  for (size_t v = 0; v < m.n_vertices; v++)
+  {
+    vec3 p = m.vertices[v].position;
+    CHECK((p.x == 0 || p.x == 1) && (p.y == 0 || p.y == 1));
+  }
+  aqr_polygon_mesh_free(&c, &m);
+}
+
+AQR_TEST(a_small_component_passes_as_it_is_and_leaves_the_mesh_before_it_alone)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(torus_of_quads(&c, 9, 6, &m));
+  CHECK(coarsen_grid(&c, 3, 2, false, on_sheet, 100, &m) == AQR_OK);
+  CHECK(m.n_vertices == 54 + 12 && m.n_faces == 54 + 12);
+  CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m) && aqr_pm_euler(&m) == 1);
+  CHECK(aqr_pm_face_size(&m, 53) == 4 && aqr_pm_face_size(&m, 54) == 3);
+  aqr_polygon_mesh_free(&c, &m);
+  CHECK(c.bytes == 0);
+}
+
+AQR_TEST_MAIN
