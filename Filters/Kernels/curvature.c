@@ -1,0 +1,440 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Normal-cycle curvature tensors averaged over balls on the surface (paper section 2).
+ *
+ * A ball is summed over the points inside it: each carries half of its edges and a third of its
+ * faces, which leaves only the edges and faces across the sphere to be set right one by one. Where
+ * balls hold many points, neighbours' balls are all but the same, so only an independent set of
+ * points gets its own. */
+#include "field.h"
+
+#include <string.h>
+
+enum
+{
+  slots = 16,          /* balls grown side by side, at most */
+  first_queue = 1024,  /* points a slot has room for until a ball asks for more */
+  batch_work = 1 << 18 /* points to visit between two looks at the progress hook */
+};
+
+static const double least_radius = 2;    /* in mean lengths of the edges around the point */
+static const double shared_radius = 3.5; /* likewise; with about 40 points inside, neighbours may share */
+
+typedef struct lump
+{
+  vec3 position;
+  double area;   /* a third of the faces around the point */
+  double sum[6]; /* half of beta |e| ebar ebar^T of its edges */
+  double length; /* mean of its edges */
+} lump;
+
+typedef struct slot
+{
+  aqr_index* queue;
+  size_t room;
+  uint8_t* inside;  /* a bit per point, all clear between balls */
+  size_t next, end; /* of the centres; next < end when a ball did not fit into the queue */
+  size_t visited;
+} slot;
+
+typedef struct job
+{
+  const aqr_surface* s;
+  double radius;
+  double* beta; /* per half-edge: signed dihedral angle, 0 at borders and seams */
+  lump* lumps;
+  aqr_index* centres; /* points with a ball of their own */
+  size_t n_centres;
+  uint8_t* is_centre;
+  size_t inside_bytes;
+  slot slot[slots];
+  double* t;
+  double* normal;
+} job;
+
+/* The angle at which two faces meet over an edge, positive where the edge is convex. The half-edge
+ * with the lower number writes both sides. */
+static void measure_angles(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (aqr_index h = (aqr_index)begin; h < end; h++)
+  {
+    aqr_index w = aqr_twin(j->s, h);
+    if (w == AQR_NONE)
+      j->beta[h] = 0;
+    if (w == AQR_NONE || w < h)
+      continue;
+    vec3 n = aqr_face_cross(j->s, aqr_face_of(h)), m = aqr_face_cross(j->s, aqr_face_of(w));
+    vec3 e = v3_unit(v3_sub(aqr_point(j->s, aqr_to(j->s, h)), aqr_point(j->s, aqr_from(j->s, h))));
+    bool flat = !(v3_norm2(n) > 0) || !(v3_norm2(m) > 0);
+    j->beta[h] = j->beta[w] = flat ? 0 : atan2(v3_dot(e, v3_cross(n, m)), v3_dot(n, m));
+  }
+}
+
+static void add_edge(double* sum, vec3 e, double weight)
+{
+  sum[0] += weight * e.x * e.x;
+  sum[1] += weight * e.y * e.y;
+  sum[2] += weight * e.z * e.z;
+  sum[3] += weight * e.x * e.y;
+  sum[4] += weight * e.x * e.z;
+  sum[5] += weight * e.y * e.z;
+}
+
+/* What a point carries, and its normal, from the faces of its sector. */
+static void lump_points(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  const aqr_surface* s = j->s;
+  for (aqr_index v = (aqr_index)begin; v < end; v++)
+  {
+    lump p = { .position = aqr_point(s, v) };
+    vec3 normal = v3(0, 0, 0), any = v3(0, 0, 0);
+    double length = 0;
+    size_t n = 0;
+    for (aqr_index first = s->fan[v], h = first; h != AQR_NONE;)
+    {
+      vec3 cross = aqr_face_cross(s, aqr_face_of(h));
+      vec3 e = v3_sub(aqr_point(s, aqr_to(s, h)), p.position);
+      double l = v3_norm(e);
+      normal = v3_add(normal, cross);
+      if (!(v3_norm2(any) > 0))
+        any = cross;
+      p.area += v3_norm(cross) / 6;
+      if (l > 0)
+      {
+        add_edge(p.sum, e, j->beta[h] / (2 * l));
+        length += l;
+        n++;
+      }
+      h = aqr_next_around(s, h);
+      if (h == first)
+        break;
+    }
+    p.length = n ? length / (double)n : 0;
+    j->lumps[v] = p;
+    v3_store(j->normal + 3 * (size_t)v, v3_unit(v3_norm2(normal) > 0 ? normal : any));
+  }
+}
+
+static double radius_at(const job* j, aqr_index v)
+{
+  return fmax(j->radius, least_radius * j->lumps[v].length);
+}
+
+/* Greedy in the order of the points, so that the choice is the same for any number of threads. */
+static void choose_centres(job* j)
+{
+  const aqr_surface* s = j->s;
+  for (aqr_index v = 0; v < s->n_points; v++)
+  {
+    bool covered = false, shares = j->radius > shared_radius * j->lumps[v].length;
+    for (aqr_index first = s->fan[v], h = first; shares && !covered && h != AQR_NONE;)
+    {
+      covered = j->is_centre[aqr_to(s, h)] || j->is_centre[aqr_from(s, aqr_prev(h))];
+      h = aqr_next_around(s, h);
+      if (h == first)
+        break;
+    }
+    if (covered)
+      continue;
+    j->is_centre[v] = 1;
+    j->centres[j->n_centres++] = v;
+  }
+}
+
+typedef struct ball
+{
+  vec3 centre;
+  double radius, radius2;
+  double area;
+  double sum[6];
+} ball;
+
+static bool holds(const ball* b, vec3 p)
+{
+  return v3_norm2(v3_sub(p, b->centre)) < b->radius2;
+}
+
+/* How much of the edge from p inside along e lies inside, as a fraction, when its end does not. */
+static double share_inside(const ball* b, vec3 p, vec3 e)
+{
+  vec3 d = v3_sub(p, b->centre);
+  double a = v3_norm2(e), half = v3_dot(d, e);
+  double t = (sqrt(fmax(half * half + a * (b->radius2 - v3_norm2(d)), 0)) - half) / a;
+  return t > 0 ? fmin(t, 1) : 0;
+}
+
+/* The piece of an edge between two points outside that the sphere cuts off. */
+static double length_between(const ball* b, vec3 p, vec3 e)
+{
+  vec3 d = v3_sub(p, b->centre);
+  double a = v3_norm2(e), half = v3_dot(d, e);
+  if (!(half < 0) || !(half > -a))
+    return 0;
+  double root = half * half + a * (b->radius2 - v3_norm2(d));
+  return root > 0 ? 2 * sqrt(root / a) : 0;
+}
+
+/* The part of a triangle at the corner where both edges start inside: cut by the chord, and the
+ * segment of the disk beyond the chord. */
+static double segment(const ball* b, vec3 p, vec3 q)
+{
+  double x2 = v3_norm2(v3_sub(p, q)) / (4 * b->radius2);
+  return b->radius2 * x2 * sqrt(x2) * (2. / 3 + x2 / 5);
+}
+
+/* The edge opposite to h, both of whose ends are outside, once of its two faces. */
+static void add_opposite(const job* j, ball* b, aqr_index h)
+{
+  const aqr_surface* s = j->s;
+  aqr_index g = aqr_next(h), w = aqr_twin(s, g);
+  if (w == AQR_NONE || j->beta[g] == 0)
+    return;
+  vec3 p = j->lumps[aqr_from(s, g)].position, e = v3_sub(j->lumps[aqr_to(s, g)].position, p);
+  double l = length_between(b, p, e);
+  if (l > 0 && (g < w || !holds(b, j->lumps[aqr_from(s, aqr_prev(w))].position)))
+    add_edge(b->sum, e, j->beta[g] * l / v3_norm2(e));
+}
+
+/* Sets right what the lump at u, inside, gets wrong about the face of h, whose corners a and b are
+ * not both inside. A face with two corners inside is left to the first of them. */
+static void clip_face(const job* j, ball* b, aqr_index h, vec3 u, vec3 p, vec3 q, bool p_in, bool q_in)
+{
+  vec3 e = v3_sub(p, u), f = v3_sub(q, u);
+  double area = v3_norm(v3_cross(e, f)) / 2, inside;
+  if (!(area > 0) || q_in)
+    return;
+  double t = share_inside(b, u, f);
+  vec3 end = v3_madd(u, t, f);
+  if (p_in)
+  {
+    vec3 g = v3_sub(q, p);
+    double r = share_inside(b, p, g);
+    inside = area * (1 - (1 - t) * (1 - r)) + segment(b, end, v3_madd(p, r, g)) - area * (2. / 3);
+  }
+  else
+  {
+    double r = share_inside(b, u, e);
+    inside = area * t * r + segment(b, end, v3_madd(u, r, e)) - area / 3;
+    add_opposite(j, b, h);
+  }
+  b->area += fmin(inside, area);
+}
+
+static bool visit(slot* k, size_t* n, aqr_index v)
+{
+  uint8_t bit = (uint8_t)(1u << (v & 7));
+  if (k->inside[v >> 3] & bit)
+    return true;
+  if (*n == k->room)
+    return false;
+  k->inside[v >> 3] = (uint8_t)(k->inside[v >> 3] | bit);
+  k->queue[(*n)++] = v;
+  return true;
+}
+
+/* Grows the ball from its centre over edges; false when it does not fit into the queue. */
+static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
+{
+  const aqr_surface* s = j->s;
+  size_t n = 0;
+  bool fits = visit(k, &n, centre);
+  for (size_t i = 0; fits && i < n; i++)
+  {
+    const lump* u = &j->lumps[k->queue[i]];
+    b->area += u->area;
+    for (int c = 0; c < 6; c++)
+      b->sum[c] += u->sum[c];
+    aqr_index first = s->fan[k->queue[i]], h = first;
+    if (h == AQR_NONE)
+      break;
+    aqr_index to = aqr_to(s, h);
+    vec3 p = j->lumps[to].position;
+    bool p_in = holds(b, p);
+    fits = !p_in || visit(k, &n, to);
+    while (fits)
+    {
+      to = aqr_from(s, aqr_prev(h));
+      vec3 q = j->lumps[to].position;
+      bool q_in = holds(b, q);
+      fits = !q_in || visit(k, &n, to);
+      if (!p_in && j->beta[h] != 0)
+      {
+        vec3 e = v3_sub(p, u->position);
+        add_edge(b->sum, e, j->beta[h] * (share_inside(b, u->position, e) - 0.5) / v3_norm(e));
+      }
+      if (!p_in || !q_in)
+        clip_face(j, b, h, u->position, p, q, p_in, q_in);
+      h = aqr_next_around(s, h);
+      if (h == AQR_NONE || h == first)
+        break;
+      p = q;
+      p_in = q_in;
+    }
+  }
+  for (size_t i = 0; i < n; i++)
+    k->inside[k->queue[i] >> 3] = 0;
+  k->visited += n;
+  return fits;
+}
+
+static void store_mean(double* t, const ball* b)
+{
+  bool finite = b->area > 0;
+  for (int c = 0; c < 6; c++)
+  {
+    t[c] = finite ? b->sum[c] / b->area : 0;
+    finite = finite && isfinite(t[c]);
+  }
+  if (!finite)
+    memset(t, 0, 6 * sizeof *t);
+}
+
+static void run_slots(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (size_t i = begin; i < end; i++)
+    for (slot* k = &j->slot[i]; k->next < k->end; k->next++)
+    {
+      aqr_index v = j->centres[k->next];
+      double r = radius_at(j, v);
+      ball b = { .centre = j->lumps[v].position, .radius = r, .radius2 = r * r };
+      if (!grow(j, k, v, &b))
+        break;
+      store_mean(j->t + 6 * (size_t)v, &b);
+    }
+}
+
+/* Lets every slot work off its range, giving those that run out of queue more of it: a queue
+ * doubles until it holds all points, so this ends. */
+static aqr_status run_batch(aqr_context* c, job* j)
+{
+  for (bool again = true; again;)
+  {
+    if (c->hooks.parallel_for)
+      c->hooks.parallel_for(c->hooks.user, slots, 1, run_slots, j);
+    else
+      run_slots(j, 0, slots);
+    again = false;
+    for (slot* k = j->slot; k < j->slot + slots; k++)
+      if (k->next < k->end)
+      {
+        again = true;
+        if (!AQR_RESERVE(c, k->queue, k->room, 2 * k->room))
+          return AQR_OUT_OF_MEMORY;
+      }
+  }
+  return AQR_OK;
+}
+
+/* Balls differ in size by orders of magnitude, so the length of a batch follows what the last one
+ * took; it decides nothing but how often the progress hook is asked. */
+static aqr_status fill_balls(aqr_context* c, job* j, double from, double to)
+{
+  aqr_status status = AQR_OK;
+  size_t per_slot = 16;
+  for (size_t next = 0; next < j->n_centres;)
+  {
+    AQR_REQUIRE(aqr_step(c, from + (to - from) * (double)next / (double)j->n_centres), AQR_CANCELLED);
+    size_t visited = 0, first = next;
+    for (slot* k = j->slot; k < j->slot + slots; k++)
+    {
+      k->visited = 0;
+      k->next = next;
+      next = k->end = j->n_centres - next < per_slot ? j->n_centres : next + per_slot;
+    }
+    AQR_TRY(run_batch(c, j));
+    for (slot* k = j->slot; k < j->slot + slots; k++)
+      visited += k->visited;
+    double wanted = (double)batch_work * (double)(next - first) / ((double)visited * slots);
+    per_slot = wanted < 1 ? 1 : wanted > 4 * (double)per_slot ? 4 * per_slot : (size_t)wanted;
+  }
+done:
+  return status;
+}
+
+/* Points without a ball take the mean of the balls next to them. */
+static void average_neighbours(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  const aqr_surface* s = j->s;
+  for (aqr_index v = (aqr_index)begin; v < end; v++)
+  {
+    if (j->is_centre[v])
+      continue;
+    ball b = { .area = 0 };
+    for (aqr_index first = s->fan[v], h = first; h != AQR_NONE;)
+    {
+      aqr_index next = aqr_next_around(s, h);
+      aqr_index around[2] = { aqr_to(s, h), next == AQR_NONE ? aqr_from(s, aqr_prev(h)) : v };
+      for (int i = 0; i < 2; i++)
+        if (j->is_centre[around[i]])
+        {
+          b.area += 1;
+          for (int c = 0; c < 6; c++)
+            b.sum[c] += j->t[6 * (size_t)around[i] + (size_t)c];
+        }
+      h = next;
+      if (h == first)
+        break;
+    }
+    store_mean(j->t + 6 * (size_t)v, &b);
+  }
+}
+
+static void free_job(aqr_context* c, job* j)
+{
+  AQR_DROP(c, j->beta, 3 * j->s->n_faces);
+  AQR_DROP(c, j->lumps, j->s->n_points);
+  AQR_DROP(c, j->centres, j->s->n_points);
+  AQR_DROP(c, j->is_centre, j->s->n_points);
+  for (slot* k = j->slot; k < j->slot + slots; k++)
+  {
+    AQR_DROP(c, k->queue, k->room);
+    AQR_DROP(c, k->inside, j->inside_bytes);
+  }
+}
+
+static bool allocate_job(aqr_context* c, job* j)
+{
+  size_t n = j->s->n_points;
+  j->inside_bytes = n / 8 + 1;
+  j->beta = AQR_NEW(c, double, 3 * j->s->n_faces);
+  j->lumps = AQR_NEW(c, lump, n);
+  j->centres = AQR_NEW(c, aqr_index, n);
+  j->is_centre = AQR_NEW0(c, uint8_t, n);
+  bool ok = j->beta && j->lumps && j->centres && j->is_centre;
+  for (slot* k = j->slot; ok && k < j->slot + slots; k++)
+  {
+    k->inside = AQR_NEW0(c, uint8_t, j->inside_bytes);
+    ok = k->inside && AQR_RESERVE(c, k->queue, k->room, first_queue);
+  }
+  return ok;
+}
+
+void aqr_tensors_free(aqr_context* c, const aqr_surface* s, aqr_tensors* tensors)
+{
+  AQR_DROP(c, tensors->t, 6 * s->n_points);
+  AQR_DROP(c, tensors->normal, 3 * s->n_points);
+}
+
+aqr_status aqr_curvature_tensors(aqr_context* c, const aqr_surface* s, double radius, aqr_tensors* tensors)
+{
+  aqr_status status = AQR_OK;
+  size_t n = s->n_points;
+  job j = { .s = s, .radius = radius };
+  tensors->t = j.t = AQR_NEW(c, double, 6 * n);
+  tensors->normal = j.normal = AQR_NEW(c, double, 3 * n);
+  AQR_REQUIRE(tensors->t && tensors->normal && allocate_job(c, &j), AQR_OUT_OF_MEMORY);
+
+  AQR_TRY(aqr_parallel(c, 3 * s->n_faces, measure_angles, &j, 0, 0.1));
+  AQR_TRY(aqr_parallel(c, n, lump_points, &j, 0.1, 0.2));
+  choose_centres(&j);
+  AQR_TRY(fill_balls(c, &j, 0.2, 0.95));
+  AQR_TRY(aqr_parallel(c, n, average_neighbours, &j, 0.95, 1));
+done:
+  free_job(c, &j);
+  if (status != AQR_OK)
+    aqr_tensors_free(c, s, tensors);
+  return status;
+}
