@@ -97,6 +97,22 @@ class Program(unittest.TestCase):
         self.assertEqual(points - len(half) // 2 + len(faces), 0)
         self.assertGreater(sum(len(f) == 4 for f in faces) / len(faces), 0.72)
 
+    @unittest.skipUnless(os.environ.get("AQR_SHARED_DATA"), "no shared meshes")
+    def test_real_meshes_become_manifold_meshes(self):
+        folder = os.environ["AQR_SHARED_DATA"]
+        for name in sorted(os.listdir(folder)):
+            path = os.path.join(folder, name)
+            if not name.endswith(".ply") or os.path.getsize(path) > 6e6:
+                continue
+            run = self.run_program(path, self.path("out.obj"), "--points", "3000")
+            self.assertEqual(run.returncode, 0, name + run.stderr)
+            points, faces = self.faces_of(self.path("out.obj"))
+            self.assertLess(abs(points - 3000), 151, name)
+            half = {(f[i], f[(i + 1) % len(f)]) for f in faces for i in range(len(f))}
+            self.assertEqual(len(half), sum(map(len, faces)), name)
+            self.assertEqual(len({p for face in faces for p in face}), points, name)
+            self.assertGreater(sum(len(f) == 4 for f in faces) / len(faces), 0.72, name)
+
     def test_every_format_is_written_and_read(self):
         for extension in ("ply", "obj", "stl", "vtk", "vtp"):
             middle = self.path("middle." + extension)
@@ -112,7 +128,8 @@ class Program(unittest.TestCase):
             out, lines = self.path("out.vtp"), self.path("lines.vtp")
             run = self.run_program(self.torus, out, "--lines", lines, "--threads", threads)
             self.assertEqual(run.returncode, 0, run.stderr)
-            results.append(open(out, "rb").read() + open(lines, "rb").read())
+            with open(out, "rb") as f, open(lines, "rb") as g:
+                results.append(f.read() + g.read())
         self.assertEqual(len(set(results)), 1)
 
     def test_ports_and_report_are_written(self):
@@ -123,7 +140,8 @@ class Program(unittest.TestCase):
         for name, array in (("lines", "LineType"), ("directions", "MinDirection"), ("confidence", "Confidence")):
             with open(names[name], "rb") as f:
                 self.assertIn(('Name="%s"' % array).encode(), f.read())
-        report = json.load(open(self.path("r.json")))
+        with open(self.path("r.json")) as f:
+            report = json.load(f)
         self.assertEqual(report["warnings"], [])
         self.assertGreater(report["counts"]["lines"], 10)
         self.assertGreater(report["counts"]["points"], 100)
@@ -163,9 +181,19 @@ class Program(unittest.TestCase):
             self.expect_failure(1, [file, "empty"], file, out)
             file = self.write("garbage." + extension, "This is no surface.\n")
             self.expect_failure(1, [file], file, out)
-        whole = open(self.torus).read()
-        file = self.write("short.ply", whole[: len(whole) // 3])
-        self.expect_failure(1, [file], file, out)
+        with open(self.torus) as f:
+            whole = f.read()
+        for share in (0.01, 0.3, 0.99):
+            file = self.write("short.ply", whole[: int(share * len(whole))])
+            self.expect_failure(1, [file, "too early"], file, out)
+        run = self.run_program(self.torus, self.path("binary.ply"))
+        self.assertEqual(run.returncode, 0)
+        with open(self.path("binary.ply"), "rb") as f:
+            data = f.read()
+        for share in (0.2, 0.5, 0.99):
+            with open(self.path("short.ply"), "wb") as f:
+                f.write(data[: int(share * len(data))])
+            self.expect_failure(1, [file, "too early"], file, out)
 
     def test_unusable_surfaces_are_named(self):
         out = self.write("out.vtp", "keep me")
@@ -222,7 +250,8 @@ class Program(unittest.TestCase):
         def mesh(*options):
             run = self.run_program(self.torus, self.path("out.obj"), "--tolerance", "0.002", *options)
             self.assertEqual(run.returncode, 0, run.stderr)
-            return open(self.path("out.obj")).read()
+            with open(self.path("out.obj")) as f:
+                return f.read()
 
         plain = mesh()
         self.assertEqual(mesh("--seed", "0", "--threads", "2", "--smoothing", "5"), plain)

@@ -23,7 +23,8 @@ def torus():
 class Filter(unittest.TestCase):
     def setUp(self):
         self.filter = vtkAnisotropicQuadRemesher()
-        self.filter.SetInputConnection(torus().GetOutputPort())
+        self.source = torus()
+        self.filter.SetInputConnection(self.source.GetOutputPort())
         self.filter.SetTolerance(0.002)
 
     def test_all_ports_are_filled(self):

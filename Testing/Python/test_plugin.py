@@ -29,7 +29,7 @@ class Plugin(unittest.TestCase):
     def test_named_ports_hold_their_data(self):
         self.filter.UpdatePipeline()
         for index, name in enumerate(PORTS):
-            self.assertEqual(self.filter.OutputPorts[index], name)
+            self.assertEqual(self.filter.SMProxy.GetOutputPortName(index), name)
             self.assertGreater(servermanager.Fetch(self.filter, idx=index).GetNumberOfCells(), 0, name)
 
     def test_every_property_reaches_the_filter(self):

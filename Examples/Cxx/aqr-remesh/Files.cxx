@@ -25,6 +25,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 namespace fs = std::filesystem;
 
@@ -91,6 +92,45 @@ std::string Extension(const std::string& file)
 }
 
 //------------------------------------------------------------------------------
+// Throws CutShort where an ASCII .ply has fewer lines than its header announces: vtkPLYReader ends the
+// whole process there. Files in binary end in a warning, see Recorder.
+void CheckPly(const std::string& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::string line;
+  std::string word;
+  bool ascii = false;
+  long long announced = 0;
+  while (std::getline(stream, line) && line.compare(0, 10, "end_header") != 0)
+  {
+    std::istringstream words(line);
+    long long count = 0;
+    words >> word;
+    if (word == "format")
+    {
+      words >> word;
+      ascii = word == "ascii";
+    }
+    else if (word == "element" && words >> word >> count)
+    {
+      announced += count;
+    }
+  }
+  if (!stream)
+  {
+    throw CutShort("it has no .ply header");
+  }
+  while (ascii && announced > 0 && std::getline(stream, line))
+  {
+    announced -= line.find_first_not_of(" \t\r") != std::string::npos;
+  }
+  if (ascii && announced > 0)
+  {
+    throw CutShort("the file ends too early");
+  }
+}
+
+//------------------------------------------------------------------------------
 template <typename ReaderT>
 vtkSmartPointer<vtkPolyData> Read(const std::string& file)
 {
@@ -105,6 +145,7 @@ vtkSmartPointer<vtkPolyData> ReadByExtension(const std::string& extension, const
 {
   if (extension == ".ply")
   {
+    CheckPly(file);
     return Read<vtkPLYReader>(file);
   }
   if (extension == ".obj")
