@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "faces.h"
 
+#include "joints.h"
 #include "partition.h"
 #include "regularize.h"
 
@@ -305,6 +306,7 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   {
     bool changed = false;
     AQR_REQUIRE(weld_joints(c, m, &changed), AQR_CANCELLED);
+    AQR_TRY(aqr_joints_extend(c, m, round + 1, &changed));
     AQR_TRY(redraw_all(c, m, largest, &changed));
     AQR_TRY(partition_all(c, m, options));
     if (!changed)
