@@ -3,8 +3,8 @@
  *
  * A ball is summed over the points inside it: each carries half of its edges and a third of its
  * faces, which leaves only the edges and faces across the sphere to be set right one by one. Where
- * balls hold many points, neighbours' balls are all but the same, so only an independent set of
- * points gets its own. */
+ * balls hold many points, close points' balls are all but the same, so only some points, a share of
+ * the radius apart, get their own and the others a blend: the work is linear for any radius. */
 #include "field.h"
 
 #include <string.h>
@@ -13,11 +13,14 @@ enum
 {
   slots = 16,          /* balls grown side by side, at most */
   first_queue = 1024,  /* points a slot has room for until a ball asks for more */
-  batch_work = 1 << 18 /* points to visit between two looks at the progress hook */
+  poll = 1024,         /* points or balls between two looks at the progress hook */
+  batch_work = 1 << 18 /* likewise, points to visit */
 };
 
 static const double least_radius = 2;    /* in mean lengths of the edges around the point */
-static const double shared_radius = 3.5; /* likewise; with about 40 points inside, neighbours may share */
+static const double shared_radius = 3.5; /* likewise; larger balls hold about 40 points and are shared */
+static const double spacing = 0.3;       /* between shared balls, in radii: every point is this near to one */
+static const double reach = 0.5;         /* up to here a shared ball is blended in, in radii */
 
 typedef struct lump
 {
@@ -25,6 +28,7 @@ typedef struct lump
   double area;   /* a third of the faces around the point */
   double sum[6]; /* half of beta |e| ebar ebar^T of its edges */
   double length; /* mean of its edges */
+  double longest;
 } lump;
 
 typedef struct slot
@@ -36,15 +40,25 @@ typedef struct slot
   size_t visited;
 } slot;
 
+typedef enum point_state
+{
+  uncovered,
+  blended,
+  own_ball,
+  shared_ball
+} point_state;
+
 typedef struct job
 {
   const aqr_surface* s;
   double radius;
+  double* area; /* per face */
   double* beta; /* per half-edge: signed dihedral angle, 0 at borders and seams */
   lump* lumps;
   aqr_index* centres; /* points with a ball of their own */
   size_t n_centres;
-  uint8_t* is_centre;
+  uint8_t* covered; /* per point: a point_state */
+  double* weight;   /* per point: of the balls blended into t */
   size_t inside_bytes;
   slot slot[slots];
   double* t;
@@ -68,6 +82,13 @@ static void measure_angles(void* data, size_t begin, size_t end)
     bool flat = !(v3_norm2(n) > 0) || !(v3_norm2(m) > 0);
     j->beta[h] = j->beta[w] = flat ? 0 : atan2(v3_dot(e, v3_cross(n, m)), v3_dot(n, m));
   }
+}
+
+static void measure_areas(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (aqr_index f = (aqr_index)begin; f < end; f++)
+    j->area[f] = v3_norm(aqr_face_cross(j->s, f)) / 2;
 }
 
 static void add_edge(double* sum, vec3 e, double weight)
@@ -99,11 +120,12 @@ static void lump_points(void* data, size_t begin, size_t end)
       normal = v3_add(normal, cross);
       if (!(v3_norm2(any) > 0))
         any = cross;
-      p.area += v3_norm(cross) / 6;
+      p.area += j->area[aqr_face_of(h)] / 3;
       if (l > 0)
       {
         add_edge(p.sum, e, j->beta[h] / (2 * l));
         length += l;
+        p.longest = fmax(p.longest, l);
         n++;
       }
       h = aqr_next_around(s, h);
@@ -119,27 +141,6 @@ static void lump_points(void* data, size_t begin, size_t end)
 static double radius_at(const job* j, aqr_index v)
 {
   return fmax(j->radius, least_radius * j->lumps[v].length);
-}
-
-/* Greedy in the order of the points, so that the choice is the same for any number of threads. */
-static void choose_centres(job* j)
-{
-  const aqr_surface* s = j->s;
-  for (aqr_index v = 0; v < s->n_points; v++)
-  {
-    bool covered = false, shares = j->radius > shared_radius * j->lumps[v].length;
-    for (aqr_index first = s->fan[v], h = first; shares && !covered && h != AQR_NONE;)
-    {
-      covered = j->is_centre[aqr_to(s, h)] || j->is_centre[aqr_from(s, aqr_prev(h))];
-      h = aqr_next_around(s, h);
-      if (h == first)
-        break;
-    }
-    if (covered)
-      continue;
-    j->is_centre[v] = 1;
-    j->centres[j->n_centres++] = v;
-  }
 }
 
 typedef struct ball
@@ -201,7 +202,7 @@ static void add_opposite(const job* j, ball* b, aqr_index h)
 static void clip_face(const job* j, ball* b, aqr_index h, vec3 u, vec3 p, vec3 q, bool p_in, bool q_in)
 {
   vec3 e = v3_sub(p, u), f = v3_sub(q, u);
-  double area = v3_norm(v3_cross(e, f)) / 2, inside;
+  double area = j->area[aqr_face_of(h)], inside;
   if (!(area > 0) || q_in)
     return;
   double t = share_inside(b, u, f);
@@ -210,15 +211,15 @@ static void clip_face(const job* j, ball* b, aqr_index h, vec3 u, vec3 p, vec3 q
   {
     vec3 g = v3_sub(q, p);
     double r = share_inside(b, p, g);
-    inside = area * (1 - (1 - t) * (1 - r)) + segment(b, end, v3_madd(p, r, g)) - area * (2. / 3);
+    inside = area * (1 - (1 - t) * (1 - r)) + segment(b, end, v3_madd(p, r, g));
   }
   else
   {
     double r = share_inside(b, u, e);
-    inside = area * t * r + segment(b, end, v3_madd(u, r, e)) - area / 3;
+    inside = area * t * r + segment(b, end, v3_madd(u, r, e));
     add_opposite(j, b, h);
   }
-  b->area += fmin(inside, area);
+  b->area += fmin(inside, area) - area * (p_in ? 2. / 3 : 1. / 3);
 }
 
 static bool visit(slot* k, size_t* n, aqr_index v)
@@ -233,10 +234,53 @@ static bool visit(slot* k, size_t* n, aqr_index v)
   return true;
 }
 
+/* Visits the points around u, all of which are inside. */
+static bool visit_all(const job* j, slot* k, size_t* n, aqr_index first)
+{
+  const aqr_surface* s = j->s;
+  bool fits = visit(k, n, aqr_to(s, first));
+  for (aqr_index h = first; fits;)
+  {
+    fits = visit(k, n, aqr_from(s, aqr_prev(h)));
+    h = aqr_next_around(s, h);
+    if (h == AQR_NONE || h == first)
+      break;
+  }
+  return fits;
+}
+
+/* Visits those of the points around u that are inside and sets right the edges and faces that lead
+ * out. */
+static bool visit_some(const job* j, slot* k, size_t* n, ball* b, aqr_index first)
+{
+  const aqr_surface* s = j->s;
+  vec3 u = j->lumps[aqr_from(s, first)].position, p = j->lumps[aqr_to(s, first)].position;
+  bool p_in = holds(b, p), fits = !p_in || visit(k, n, aqr_to(s, first));
+  for (aqr_index h = first; fits;)
+  {
+    aqr_index to = aqr_from(s, aqr_prev(h));
+    vec3 q = j->lumps[to].position;
+    bool q_in = holds(b, q);
+    fits = !q_in || visit(k, n, to);
+    if (!p_in && j->beta[h] != 0)
+    {
+      vec3 e = v3_sub(p, u);
+      add_edge(b->sum, e, j->beta[h] * (share_inside(b, u, e) - 0.5) / v3_norm(e));
+    }
+    if (!p_in || !q_in)
+      clip_face(j, b, h, u, p, q, p_in, q_in);
+    h = aqr_next_around(s, h);
+    if (h == AQR_NONE || h == first)
+      break;
+    p = q;
+    p_in = q_in;
+  }
+  return fits;
+}
+
 /* Grows the ball from its centre over edges; false when it does not fit into the queue. */
 static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
 {
-  const aqr_surface* s = j->s;
   size_t n = 0;
   bool fits = visit(k, &n, centre);
   for (size_t i = 0; fits && i < n; i++)
@@ -245,32 +289,12 @@ static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
     b->area += u->area;
     for (int c = 0; c < 6; c++)
       b->sum[c] += u->sum[c];
-    aqr_index first = s->fan[k->queue[i]], h = first;
-    if (h == AQR_NONE)
-      break;
-    aqr_index to = aqr_to(s, h);
-    vec3 p = j->lumps[to].position;
-    bool p_in = holds(b, p);
-    fits = !p_in || visit(k, &n, to);
-    while (fits)
-    {
-      to = aqr_from(s, aqr_prev(h));
-      vec3 q = j->lumps[to].position;
-      bool q_in = holds(b, q);
-      fits = !q_in || visit(k, &n, to);
-      if (!p_in && j->beta[h] != 0)
-      {
-        vec3 e = v3_sub(p, u->position);
-        add_edge(b->sum, e, j->beta[h] * (share_inside(b, u->position, e) - 0.5) / v3_norm(e));
-      }
-      if (!p_in || !q_in)
-        clip_face(j, b, h, u->position, p, q, p_in, q_in);
-      h = aqr_next_around(s, h);
-      if (h == AQR_NONE || h == first)
-        break;
-      p = q;
-      p_in = q_in;
-    }
+    aqr_index first = j->s->fan[k->queue[i]];
+    double clear = b->radius - u->longest;
+    if (clear > 0 && v3_norm2(v3_sub(u->position, b->centre)) < clear * clear)
+      fits = first == AQR_NONE || visit_all(j, k, &n, first);
+    else
+      fits = first == AQR_NONE || visit_some(j, k, &n, b, first);
   }
   for (size_t i = 0; i < n; i++)
     k->inside[k->queue[i] >> 3] = 0;
@@ -353,41 +377,99 @@ done:
   return status;
 }
 
-/* Points without a ball take the mean of the balls next to them. */
-static void average_neighbours(void* data, size_t begin, size_t end)
+/* The points within a distance of v, reached over edges, into the queue of k. */
+static aqr_status disk(aqr_context* c, const job* j, slot* k, aqr_index v, double radius, size_t* n)
 {
-  job* j = data;
   const aqr_surface* s = j->s;
-  for (aqr_index v = (aqr_index)begin; v < end; v++)
-  {
-    if (j->is_centre[v])
-      continue;
-    ball b = { .area = 0 };
-    for (aqr_index first = s->fan[v], h = first; h != AQR_NONE;)
+  ball b = { .centre = j->lumps[v].position, .radius2 = radius * radius };
+  aqr_status status = AQR_OK;
+  *n = 0;
+  visit(k, n, v);
+  for (size_t i = 0; i < *n; i++)
+    for (aqr_index first = s->fan[k->queue[i]], h = first; h != AQR_NONE;)
     {
-      aqr_index next = aqr_next_around(s, h);
-      aqr_index around[2] = { aqr_to(s, h), next == AQR_NONE ? aqr_from(s, aqr_prev(h)) : v };
-      for (int i = 0; i < 2; i++)
-        if (j->is_centre[around[i]])
-        {
-          b.area += 1;
-          for (int c = 0; c < 6; c++)
-            b.sum[c] += j->t[6 * (size_t)around[i] + (size_t)c];
-        }
-      h = next;
+      aqr_index around[2] = { aqr_to(s, h), aqr_from(s, aqr_prev(h)) };
+      AQR_REQUIRE(AQR_RESERVE(c, k->queue, k->room, *n + 2), AQR_OUT_OF_MEMORY);
+      for (int a = 0; a < 2; a++)
+        if (holds(&b, j->lumps[around[a]].position))
+          visit(k, n, around[a]);
+      h = aqr_next_around(s, h);
       if (h == first)
         break;
     }
-    store_mean(j->t + 6 * (size_t)v, &b);
+done:
+  for (size_t i = 0; i < *n; i++)
+    k->inside[k->queue[i] >> 3] = 0;
+  return status;
+}
+
+/* Greedy in the order of the points, so that the choice is the same for any number of threads. */
+static aqr_status choose_centres(aqr_context* c, job* j, double from, double to)
+{
+  const aqr_surface* s = j->s;
+  aqr_status status = AQR_OK;
+  for (aqr_index v = 0; v < s->n_points; v++)
+  {
+    AQR_REQUIRE(v % poll || aqr_step(c, from + (to - from) * v / (double)s->n_points), AQR_CANCELLED);
+    if (j->covered[v] != uncovered)
+      continue;
+    bool shares = j->radius > shared_radius * j->lumps[v].length;
+    j->covered[v] = shares ? shared_ball : own_ball;
+    j->centres[j->n_centres++] = v;
+    if (!shares)
+      continue;
+    size_t n;
+    AQR_TRY(disk(c, j, j->slot, v, spacing * j->radius, &n));
+    for (size_t i = 0; i < n; i++)
+    {
+      aqr_index w = j->slot->queue[i];
+      if (j->covered[w] == uncovered && j->radius > shared_radius * j->lumps[w].length)
+        j->covered[w] = blended;
+    }
   }
+done:
+  return status;
+}
+
+/* Adds every shared ball to the points near it that have none, in the order of the balls. */
+static aqr_status blend_balls(aqr_context* c, job* j, double from, double to)
+{
+  aqr_status status = AQR_OK;
+  double limit = reach * j->radius;
+  for (size_t i = 0; i < j->n_centres; i++)
+  {
+    AQR_REQUIRE(i % poll || aqr_step(c, from + (to - from) * (double)i / (double)j->n_centres), AQR_CANCELLED);
+    aqr_index v = j->centres[i];
+    if (j->covered[v] != shared_ball)
+      continue;
+    size_t n;
+    AQR_TRY(disk(c, j, j->slot, v, limit, &n));
+    for (size_t m = 0; m < n; m++)
+    {
+      aqr_index w = j->slot->queue[m];
+      if (j->covered[w] != blended)
+        continue;
+      double x = 1 - v3_norm2(v3_sub(j->lumps[w].position, j->lumps[v].position)) / (limit * limit);
+      j->weight[w] += x * x;
+      for (size_t a = 0; a < 6; a++)
+        j->t[6 * (size_t)w + a] += x * x * j->t[6 * (size_t)v + a];
+    }
+  }
+  for (size_t v = 0; v < j->s->n_points; v++)
+    for (size_t a = 0; a < 6 && j->covered[v] == blended; a++)
+      j->t[6 * v + a] /= j->weight[v];
+done:
+  return status;
 }
 
 static void free_job(aqr_context* c, job* j)
 {
+  AQR_DROP(c, j->area, j->s->n_faces);
   AQR_DROP(c, j->beta, 3 * j->s->n_faces);
   AQR_DROP(c, j->lumps, j->s->n_points);
   AQR_DROP(c, j->centres, j->s->n_points);
-  AQR_DROP(c, j->is_centre, j->s->n_points);
+  AQR_DROP(c, j->covered, j->s->n_points);
+  AQR_DROP(c, j->weight, j->s->n_points);
   for (slot* k = j->slot; k < j->slot + slots; k++)
   {
     AQR_DROP(c, k->queue, k->room);
@@ -399,11 +481,13 @@ static bool allocate_job(aqr_context* c, job* j)
 {
   size_t n = j->s->n_points;
   j->inside_bytes = n / 8 + 1;
+  j->area = AQR_NEW(c, double, j->s->n_faces);
   j->beta = AQR_NEW(c, double, 3 * j->s->n_faces);
   j->lumps = AQR_NEW(c, lump, n);
   j->centres = AQR_NEW(c, aqr_index, n);
-  j->is_centre = AQR_NEW0(c, uint8_t, n);
-  bool ok = j->beta && j->lumps && j->centres && j->is_centre;
+  j->covered = AQR_NEW0(c, uint8_t, n);
+  j->weight = AQR_NEW0(c, double, n);
+  bool ok = j->area && j->beta && j->lumps && j->centres && j->covered && j->weight;
   for (slot* k = j->slot; ok && k < j->slot + slots; k++)
   {
     k->inside = AQR_NEW0(c, uint8_t, j->inside_bytes);
@@ -423,15 +507,16 @@ aqr_status aqr_curvature_tensors(aqr_context* c, const aqr_surface* s, double ra
   aqr_status status = AQR_OK;
   size_t n = s->n_points;
   job j = { .s = s, .radius = radius };
-  tensors->t = j.t = AQR_NEW(c, double, 6 * n);
+  tensors->t = j.t = AQR_NEW0(c, double, 6 * n);
   tensors->normal = j.normal = AQR_NEW(c, double, 3 * n);
   AQR_REQUIRE(tensors->t && tensors->normal && allocate_job(c, &j), AQR_OUT_OF_MEMORY);
 
   AQR_TRY(aqr_parallel(c, 3 * s->n_faces, measure_angles, &j, 0, 0.1));
+  AQR_TRY(aqr_parallel(c, s->n_faces, measure_areas, &j, 0.1, 0.1));
   AQR_TRY(aqr_parallel(c, n, lump_points, &j, 0.1, 0.2));
-  choose_centres(&j);
-  AQR_TRY(fill_balls(c, &j, 0.2, 0.95));
-  AQR_TRY(aqr_parallel(c, n, average_neighbours, &j, 0.95, 1));
+  AQR_TRY(choose_centres(c, &j, 0.2, 0.3));
+  AQR_TRY(fill_balls(c, &j, 0.3, 0.95));
+  AQR_TRY(blend_balls(c, &j, 0.95, 1));
 done:
   free_job(c, &j);
   if (status != AQR_OK)
