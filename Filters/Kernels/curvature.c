@@ -13,22 +13,19 @@ enum
 {
   slots = 16,          /* balls grown side by side, at most */
   first_queue = 1024,  /* points a slot has room for until a ball asks for more */
-  poll = 1024,         /* points or balls between two looks at the progress hook */
-  batch_work = 1 << 18 /* likewise, points to visit */
+  batch_work = 1 << 18 /* points to visit between two looks at the progress hook */
 };
 
 static const double least_radius = 2;    /* in mean lengths of the edges around the point */
 static const double shared_radius = 3.5; /* likewise; larger balls hold about 40 points and are shared */
-static const double spacing = 0.3;       /* between shared balls, in radii: every point is this near to one */
-static const double reach = 0.5;         /* up to here a shared ball is blended in, in radii */
+static const double spacing = 0.4;       /* between shared balls, in radii: every point is this near to one */
+static const double reach = 0.65;        /* up to here a shared ball is blended in, in radii */
 
-typedef struct lump
+typedef struct lump /* eight numbers, a cache line */
 {
-  vec3 position;
-  double area;   /* a third of the faces around the point */
-  double sum[6]; /* half of beta |e| ebar ebar^T of its edges */
-  double length; /* mean of its edges */
-  double longest;
+  double area;    /* a third of the faces around the point */
+  double sum[6];  /* half of beta |e| ebar ebar^T of its edges */
+  double longest; /* of its edges */
 } lump;
 
 typedef struct slot
@@ -55,6 +52,7 @@ typedef struct job
   double* area; /* per face */
   double* beta; /* per half-edge: signed dihedral angle, 0 at borders and seams */
   lump* lumps;
+  double* length;     /* per point: mean of its edges */
   aqr_index* centres; /* points with a ball of their own */
   size_t n_centres;
   uint8_t* covered; /* per point: a point_state */
@@ -108,14 +106,15 @@ static void lump_points(void* data, size_t begin, size_t end)
   const aqr_surface* s = j->s;
   for (aqr_index v = (aqr_index)begin; v < end; v++)
   {
-    lump p = { .position = aqr_point(s, v) };
+    lump p = { .area = 0 };
+    vec3 u = aqr_point(s, v);
     vec3 normal = v3(0, 0, 0), any = v3(0, 0, 0);
     double length = 0;
     size_t n = 0;
     for (aqr_index first = s->fan[v], h = first; h != AQR_NONE;)
     {
       vec3 cross = aqr_face_cross(s, aqr_face_of(h));
-      vec3 e = v3_sub(aqr_point(s, aqr_to(s, h)), p.position);
+      vec3 e = v3_sub(aqr_point(s, aqr_to(s, h)), u);
       double l = v3_norm(e);
       normal = v3_add(normal, cross);
       if (!(v3_norm2(any) > 0))
@@ -132,7 +131,7 @@ static void lump_points(void* data, size_t begin, size_t end)
       if (h == first)
         break;
     }
-    p.length = n ? length / (double)n : 0;
+    j->length[v] = n ? length / (double)n : 0;
     j->lumps[v] = p;
     v3_store(j->normal + 3 * (size_t)v, v3_unit(v3_norm2(normal) > 0 ? normal : any));
   }
@@ -140,7 +139,7 @@ static void lump_points(void* data, size_t begin, size_t end)
 
 static double radius_at(const job* j, aqr_index v)
 {
-  return fmax(j->radius, least_radius * j->lumps[v].length);
+  return fmax(j->radius, least_radius * j->length[v]);
 }
 
 typedef struct ball
@@ -191,35 +190,45 @@ static void add_opposite(const job* j, ball* b, aqr_index h)
   aqr_index g = aqr_next(h), w = aqr_twin(s, g);
   if (w == AQR_NONE || j->beta[g] == 0)
     return;
-  vec3 p = j->lumps[aqr_from(s, g)].position, e = v3_sub(j->lumps[aqr_to(s, g)].position, p);
+  vec3 p = aqr_point(s, aqr_from(s, g)), e = v3_sub(aqr_point(s, aqr_to(s, g)), p);
   double l = length_between(b, p, e);
-  if (l > 0 && (g < w || !holds(b, j->lumps[aqr_from(s, aqr_prev(w))].position)))
+  if (l > 0 && (g < w || !holds(b, aqr_point(s, aqr_from(s, aqr_prev(w))))))
     add_edge(b->sum, e, j->beta[g] * l / v3_norm2(e));
 }
 
-/* Sets right what the lump at u, inside, gets wrong about the face of h, whose corners a and b are
- * not both inside. A face with two corners inside is left to the first of them. */
-static void clip_face(const job* j, ball* b, aqr_index h, vec3 u, vec3 p, vec3 q, bool p_in, bool q_in)
+typedef struct spoke /* an edge from a point inside */
 {
-  vec3 e = v3_sub(p, u), f = v3_sub(q, u);
+  vec3 end;
+  bool inside;  /* the end, that is */
+  double share; /* of the edge that is inside */
+} spoke;
+
+static spoke spoke_to(const ball* b, vec3 u, vec3 end)
+{
+  bool inside = holds(b, end);
+  return (spoke){ end, inside, inside ? 1 : share_inside(b, u, v3_sub(end, u)) };
+}
+
+/* Sets right what the lumps of the corners inside get wrong about the face of h, which starts inside
+ * at u and leads along p. A face with two corners inside is left to the first of them. */
+static void clip_face(const job* j, ball* b, aqr_index h, vec3 u, const spoke* p, const spoke* q)
+{
   double area = j->area[aqr_face_of(h)], inside;
-  if (!(area > 0) || q_in)
+  if (!(area > 0) || q->inside)
     return;
-  double t = share_inside(b, u, f);
-  vec3 end = v3_madd(u, t, f);
-  if (p_in)
+  vec3 end = v3_madd(u, q->share, v3_sub(q->end, u));
+  if (p->inside)
   {
-    vec3 g = v3_sub(q, p);
-    double r = share_inside(b, p, g);
-    inside = area * (1 - (1 - t) * (1 - r)) + segment(b, end, v3_madd(p, r, g));
+    vec3 g = v3_sub(q->end, p->end);
+    double r = share_inside(b, p->end, g);
+    inside = area * (1 - (1 - q->share) * (1 - r)) + segment(b, end, v3_madd(p->end, r, g));
   }
   else
   {
-    double r = share_inside(b, u, e);
-    inside = area * t * r + segment(b, end, v3_madd(u, r, e));
+    inside = area * p->share * q->share + segment(b, end, v3_madd(u, p->share, v3_sub(p->end, u)));
     add_opposite(j, b, h);
   }
-  b->area += fmin(inside, area) - area * (p_in ? 2. / 3 : 1. / 3);
+  b->area += fmin(inside, area) - area * (p->inside ? 2. / 3 : 1. / 3);
 }
 
 static bool visit(slot* k, size_t* n, aqr_index v)
@@ -254,26 +263,25 @@ static bool visit_all(const job* j, slot* k, size_t* n, aqr_index first)
 static bool visit_some(const job* j, slot* k, size_t* n, ball* b, aqr_index first)
 {
   const aqr_surface* s = j->s;
-  vec3 u = j->lumps[aqr_from(s, first)].position, p = j->lumps[aqr_to(s, first)].position;
-  bool p_in = holds(b, p), fits = !p_in || visit(k, n, aqr_to(s, first));
+  vec3 u = aqr_point(s, aqr_from(s, first));
+  spoke p = spoke_to(b, u, aqr_point(s, aqr_to(s, first)));
+  bool fits = !p.inside || visit(k, n, aqr_to(s, first));
   for (aqr_index h = first; fits;)
   {
     aqr_index to = aqr_from(s, aqr_prev(h));
-    vec3 q = j->lumps[to].position;
-    bool q_in = holds(b, q);
-    fits = !q_in || visit(k, n, to);
-    if (!p_in && j->beta[h] != 0)
+    spoke q = spoke_to(b, u, aqr_point(s, to));
+    fits = !q.inside || visit(k, n, to);
+    if (!p.inside && j->beta[h] != 0)
     {
-      vec3 e = v3_sub(p, u);
-      add_edge(b->sum, e, j->beta[h] * (share_inside(b, u, e) - 0.5) / v3_norm(e));
+      vec3 e = v3_sub(p.end, u);
+      add_edge(b->sum, e, j->beta[h] * (p.share - 0.5) / v3_norm(e));
     }
-    if (!p_in || !q_in)
-      clip_face(j, b, h, u, p, q, p_in, q_in);
+    if (!p.inside || !q.inside)
+      clip_face(j, b, h, u, &p, &q);
     h = aqr_next_around(s, h);
     if (h == AQR_NONE || h == first)
       break;
     p = q;
-    p_in = q_in;
   }
   return fits;
 }
@@ -291,7 +299,7 @@ static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
       b->sum[c] += u->sum[c];
     aqr_index first = j->s->fan[k->queue[i]];
     double clear = b->radius - u->longest;
-    if (clear > 0 && v3_norm2(v3_sub(u->position, b->centre)) < clear * clear)
+    if (clear > 0 && v3_norm2(v3_sub(aqr_point(j->s, k->queue[i]), b->centre)) < clear * clear)
       fits = first == AQR_NONE || visit_all(j, k, &n, first);
     else
       fits = first == AQR_NONE || visit_some(j, k, &n, b, first);
@@ -322,7 +330,7 @@ static void run_slots(void* data, size_t begin, size_t end)
     {
       aqr_index v = j->centres[k->next];
       double r = radius_at(j, v);
-      ball b = { .centre = j->lumps[v].position, .radius = r, .radius2 = r * r };
+      ball b = { .centre = aqr_point(j->s, v), .radius = r, .radius2 = r * r };
       if (!grow(j, k, v, &b))
         break;
       store_mean(j->t + 6 * (size_t)v, &b);
@@ -381,19 +389,20 @@ done:
 static aqr_status disk(aqr_context* c, const job* j, slot* k, aqr_index v, double radius, size_t* n)
 {
   const aqr_surface* s = j->s;
-  ball b = { .centre = j->lumps[v].position, .radius2 = radius * radius };
+  ball b = { .centre = aqr_point(j->s, v), .radius2 = radius * radius };
   aqr_status status = AQR_OK;
   *n = 0;
   visit(k, n, v);
   for (size_t i = 0; i < *n; i++)
     for (aqr_index first = s->fan[k->queue[i]], h = first; h != AQR_NONE;)
     {
-      aqr_index around[2] = { aqr_to(s, h), aqr_from(s, aqr_prev(h)) };
+      aqr_index next = aqr_next_around(s, h), to = aqr_to(s, h), last = aqr_from(s, aqr_prev(h));
       AQR_REQUIRE(AQR_RESERVE(c, k->queue, k->room, *n + 2), AQR_OUT_OF_MEMORY);
-      for (int a = 0; a < 2; a++)
-        if (holds(&b, j->lumps[around[a]].position))
-          visit(k, n, around[a]);
-      h = aqr_next_around(s, h);
+      if (holds(&b, aqr_point(s, to)))
+        visit(k, n, to);
+      if (next == AQR_NONE && holds(&b, aqr_point(s, last)))
+        visit(k, n, last);
+      h = next;
       if (h == first)
         break;
     }
@@ -403,27 +412,38 @@ done:
   return status;
 }
 
+/* Asks the progress hook once in a while. */
+static aqr_status count_work(aqr_context* c, size_t* work, size_t done, double fraction)
+{
+  *work += done;
+  if (*work < batch_work)
+    return AQR_OK;
+  *work = 0;
+  return aqr_step(c, fraction) ? AQR_OK : AQR_CANCELLED;
+}
+
 /* Greedy in the order of the points, so that the choice is the same for any number of threads. */
 static aqr_status choose_centres(aqr_context* c, job* j, double from, double to)
 {
   const aqr_surface* s = j->s;
   aqr_status status = AQR_OK;
+  size_t n, work = 0;
   for (aqr_index v = 0; v < s->n_points; v++)
   {
-    AQR_REQUIRE(v % poll || aqr_step(c, from + (to - from) * v / (double)s->n_points), AQR_CANCELLED);
+    AQR_TRY(count_work(c, &work, 1, from + (to - from) * v / (double)s->n_points));
     if (j->covered[v] != uncovered)
       continue;
-    bool shares = j->radius > shared_radius * j->lumps[v].length;
+    bool shares = j->radius > shared_radius * j->length[v];
     j->covered[v] = shares ? shared_ball : own_ball;
     j->centres[j->n_centres++] = v;
     if (!shares)
       continue;
-    size_t n;
     AQR_TRY(disk(c, j, j->slot, v, spacing * j->radius, &n));
+    work += n;
     for (size_t i = 0; i < n; i++)
     {
       aqr_index w = j->slot->queue[i];
-      if (j->covered[w] == uncovered && j->radius > shared_radius * j->lumps[w].length)
+      if (j->covered[w] == uncovered && j->radius > shared_radius * j->length[w])
         j->covered[w] = blended;
     }
   }
@@ -436,20 +456,21 @@ static aqr_status blend_balls(aqr_context* c, job* j, double from, double to)
 {
   aqr_status status = AQR_OK;
   double limit = reach * j->radius;
+  size_t n, work = 0;
   for (size_t i = 0; i < j->n_centres; i++)
   {
-    AQR_REQUIRE(i % poll || aqr_step(c, from + (to - from) * (double)i / (double)j->n_centres), AQR_CANCELLED);
+    AQR_TRY(count_work(c, &work, 1, from + (to - from) * (double)i / (double)j->n_centres));
     aqr_index v = j->centres[i];
     if (j->covered[v] != shared_ball)
       continue;
-    size_t n;
     AQR_TRY(disk(c, j, j->slot, v, limit, &n));
+    work += n;
     for (size_t m = 0; m < n; m++)
     {
       aqr_index w = j->slot->queue[m];
       if (j->covered[w] != blended)
         continue;
-      double x = 1 - v3_norm2(v3_sub(j->lumps[w].position, j->lumps[v].position)) / (limit * limit);
+      double x = 1 - v3_norm2(v3_sub(aqr_point(j->s, w), aqr_point(j->s, v))) / (limit * limit);
       j->weight[w] += x * x;
       for (size_t a = 0; a < 6; a++)
         j->t[6 * (size_t)w + a] += x * x * j->t[6 * (size_t)v + a];
@@ -467,6 +488,7 @@ static void free_job(aqr_context* c, job* j)
   AQR_DROP(c, j->area, j->s->n_faces);
   AQR_DROP(c, j->beta, 3 * j->s->n_faces);
   AQR_DROP(c, j->lumps, j->s->n_points);
+  AQR_DROP(c, j->length, j->s->n_points);
   AQR_DROP(c, j->centres, j->s->n_points);
   AQR_DROP(c, j->covered, j->s->n_points);
   AQR_DROP(c, j->weight, j->s->n_points);
@@ -484,10 +506,11 @@ static bool allocate_job(aqr_context* c, job* j)
   j->area = AQR_NEW(c, double, j->s->n_faces);
   j->beta = AQR_NEW(c, double, 3 * j->s->n_faces);
   j->lumps = AQR_NEW(c, lump, n);
+  j->length = AQR_NEW(c, double, n);
   j->centres = AQR_NEW(c, aqr_index, n);
   j->covered = AQR_NEW0(c, uint8_t, n);
   j->weight = AQR_NEW0(c, double, n);
-  bool ok = j->area && j->beta && j->lumps && j->centres && j->covered && j->weight;
+  bool ok = j->area && j->beta && j->lumps && j->length && j->centres && j->covered && j->weight;
   for (slot* k = j->slot; ok && k < j->slot + slots; k++)
   {
     k->inside = AQR_NEW0(c, uint8_t, j->inside_bytes);
