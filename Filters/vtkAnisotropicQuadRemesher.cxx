@@ -603,7 +603,8 @@ void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* dire
   if (this->GenerateConfidence)
   {
     confidence->ShallowCopy(surface);
-    confidence->GetPointData()->SetScalars(NewArray<vtkFloatArray>("Confidence", field->point_confidence, points));
+    confidence->GetPointData()->AddArray(NewArray<vtkFloatArray>("Confidence", field->point_confidence, points));
+    confidence->GetPointData()->SetActiveScalars("Confidence"); // SetScalars() would drop the input's
     confidence->GetCellData()->AddArray(NewArray<vtkFloatArray>("Confidence", field->triangle_confidence, triangles));
   }
 }
