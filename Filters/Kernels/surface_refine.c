@@ -117,21 +117,16 @@ aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edg
   {
     AQR_REQUIRE(aqr_step(c, 0.9), AQR_CANCELLED);
     longest2 = fmax(least2, longest2 * step_down * step_down);
-    size_t n = r.n;
-    for (size_t i = 0; i < n && s->n_faces < limit; i++)
+    for (size_t i = 0; i < r.n && s->n_faces < limit; i++) /* with those listed on the way */
     {
       aqr_index h = r.list[i];
       if (length2(s, h) <= longest2)
         continue;
       size_t faces = s->n_faces;
       AQR_REQUIRE(split_edge(&r, h), AQR_OUT_OF_MEMORY);
-      /* the half that keeps its number stays listed; the other half and the new edges are listed when long */
-      for (size_t f = faces; f < s->n_faces; f++)
-      {
-        if (f == faces)
-          AQR_REQUIRE(listed(&r, (aqr_index)(3 * f), least2), AQR_OUT_OF_MEMORY);
-        AQR_REQUIRE(listed(&r, (aqr_index)(3 * f + 2), least2), AQR_OUT_OF_MEMORY);
-      }
+      /* the half that keeps its number stays listed; the edges that got new numbers are listed when long */
+      for (size_t k = 3 * faces; k < 3 * s->n_faces; k++)
+        AQR_REQUIRE(listed(&r, (aqr_index)k, least2), AQR_OUT_OF_MEMORY);
     }
     size_t kept = 0;
     for (size_t i = 0; i < r.n; i++)

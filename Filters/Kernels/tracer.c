@@ -11,6 +11,7 @@ enum
 
 static const double vertex_band = 1e-9; /* of an edge: nearer to its end counts as passing through the vertex */
 static const double sample_band = 1e-7; /* samples stay this far inside their edge */
+static const double inward = 1e-6;      /* of the way to the middle of the triangle */
 static const double turn_error = 0.02;  /* radians a step may be off by its own estimate */
 
 static aqr_complex cx(double x, double y)
@@ -314,6 +315,29 @@ static unsigned exit_edge(const aqr_chart* chart, aqr_complex x, aqr_complex d, 
   return best;
 }
 
+static aqr_complex middle(const aqr_chart* chart)
+{
+  const aqr_complex* q = chart->q;
+  return cx((q[0].x + q[1].x + q[2].x) / 3, (q[0].y + q[1].y + q[2].y) / 3);
+}
+
+static unsigned foremost_edge(const aqr_chart* chart, aqr_complex d)
+{
+  unsigned best = 0;
+  double most = -INFINITY;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    aqr_complex a = chart->q[i], b = chart->q[(i + 1) % 3];
+    double ahead = cx_dot(d, cx(a.x + b.x, a.y + b.y));
+    if (ahead > most)
+    {
+      most = ahead;
+      best = i;
+    }
+  }
+  return best;
+}
+
 /* Moves the point straight along d. The chart, and with it the meaning of d, stays unfolded into
  * one plane. */
 static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double length, bool recording, aqr_advance* result)
@@ -322,15 +346,22 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
   *result = AQR_INSIDE;
   for (int i = 0; i < most_faces; i++)
   {
-    double side[3];
+    double side[3], at;
     unsigned k = exit_edge(&t->chart, t->x, d, side);
-    if (k == 3) /* a flat triangle, or a point off its triangle by rounding: stay */
+    if (k == 3) /* beside its triangle by rounding: a little towards the middle it sees an edge again */
     {
-      t->x = cx_madd(t->x, length, d);
-      return AQR_OK;
+      aqr_complex to = cx_sub(middle(&t->chart), t->x);
+      t->x = cx_madd(t->x, inward, to);
+      k = exit_edge(&t->chart, t->x, d, side);
     }
+    if (k == 3) /* a triangle without area: over the edge that lies farthest ahead */
+    {
+      k = foremost_edge(&t->chart, d);
+      at = 0.5;
+    }
+    else
+      at = side[k] / (side[k] - side[(k + 1) % 3]);
     unsigned j = (k + 1) % 3;
-    double at = side[k] / (side[k] - side[j]);
     aqr_complex exit = cx_madd(t->chart.q[k], at, cx_sub(t->chart.q[j], t->chart.q[k]));
     double reach = fmax(0, cx_dot(d, cx_sub(exit, t->x)));
     if (reach >= length)
