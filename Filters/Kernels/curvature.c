@@ -17,7 +17,7 @@ enum
 };
 
 static const double least_radius = 2;    /* in mean lengths of the edges around the point */
-static const double shared_radius = 3.5; /* likewise; larger balls hold about 40 points and are shared */
+static const double shared_radius = 3.5; /* likewise: larger balls, of 40 points or more, are shared */
 static const double spacing = 0.4;       /* between shared balls, in radii: every point is this near to one */
 static const double reach = 0.65;        /* up to here a shared ball is blended in, in radii */
 
@@ -175,8 +175,8 @@ static double length_between(const ball* b, vec3 p, vec3 e)
   return root > 0 ? 2 * sqrt(root / a) : 0;
 }
 
-/* The part of a triangle at the corner where both edges start inside: cut by the chord, and the
- * segment of the disk beyond the chord. */
+/* The part of a disk beyond its chord from p to q: the first terms of its series, a hundredth off
+ * where the chord is as long as the radius. */
 static double segment(const ball* b, vec3 p, vec3 q)
 {
   double x2 = v3_norm2(v3_sub(p, q)) / (4 * b->radius2);
@@ -364,22 +364,23 @@ static aqr_status run_batch(aqr_context* c, job* j)
 static aqr_status fill_balls(aqr_context* c, job* j, double from, double to)
 {
   aqr_status status = AQR_OK;
-  size_t per_slot = 16;
+  size_t count = 1;
   for (size_t next = 0; next < j->n_centres;)
   {
     AQR_REQUIRE(aqr_step(c, from + (to - from) * (double)next / (double)j->n_centres), AQR_CANCELLED);
-    size_t visited = 0, first = next;
+    size_t last = j->n_centres - next < count ? j->n_centres : next + count, visited = 0;
+    size_t each = (last - next + slots - 1) / slots;
     for (slot* k = j->slot; k < j->slot + slots; k++)
     {
       k->visited = 0;
       k->next = next;
-      next = k->end = j->n_centres - next < per_slot ? j->n_centres : next + per_slot;
+      next = k->end = last - next < each ? last : next + each;
     }
     AQR_TRY(run_batch(c, j));
     for (slot* k = j->slot; k < j->slot + slots; k++)
       visited += k->visited;
-    double wanted = (double)batch_work * (double)(next - first) / ((double)visited * slots);
-    per_slot = wanted < 1 ? 1 : wanted > 4 * (double)per_slot ? 4 * per_slot : (size_t)wanted;
+    double wanted = (double)count * batch_work / (double)visited;
+    count = wanted < 1 ? 1 : wanted > 4 * (double)count ? 4 * count : (size_t)wanted;
   }
 done:
   return status;
