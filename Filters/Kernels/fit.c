@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "fit.h"
 
+#include "borders.h"
 #include "closest.h"
 
 enum
 {
-  fit_rounds = 2,
   most_steps = 512, /* faces walked from a corner of a polygon to below a sample of it */
   solver_steps = 24,
   damp_rounds = 6,
@@ -54,9 +54,10 @@ static void snap(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     aqr_vertex* x = &f->m->vertices[v];
-    if (x->kind != AQR_VERTEX_INTERIOR)
+    bool placed = x->place.bary[0] + x->place.bary[1] + x->place.bary[2] > 0;
+    if (x->kind != AQR_VERTEX_INTERIOR && placed)
       continue;
-    aqr_closest near = aqr_closest_near(f->s, x->place.face, x->position, most_steps, false);
+    aqr_closest near = aqr_closest_near(f->s, x->place.face, x->position, most_steps, true);
     x->position = near.position;
     x->place = near.place;
   }
@@ -328,19 +329,16 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, aqr_polygon_mesh* m)
   aqr_status status = AQR_OK;
   fit f = { .s = s, .m = m };
   size_t n = m->n_vertices;
+  AQR_TRY(aqr_place_on_borders(c, s, m));
   AQR_TRY(aqr_parallel(c, n, snap, &f, 0, 0.1));
   AQR_TRY(allocate(c, &f));
-  for (unsigned round = 0; round < fit_rounds; round++)
-  {
-    double from = 0.1 + 0.9 * round / fit_rounds, to = 0.1 + 0.9 * (round + 1) / fit_rounds;
-    AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, from, from));
-    list_corners(&f);
-    AQR_TRY(aqr_parallel(c, f.n_triangles, measure, &f, from, 0.3 * from + 0.7 * to));
-    AQR_TRY(solve(c, &f, 0.3 * from + 0.7 * to, to));
-    AQR_TRY(aqr_parallel(c, n, limit, &f, to, to));
-    damp(&f);
-    AQR_TRY(aqr_parallel(c, n, apply, &f, to, to));
-  }
+  AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, 0.1, 0.15));
+  list_corners(&f);
+  AQR_TRY(aqr_parallel(c, f.n_triangles, measure, &f, 0.15, 0.8));
+  AQR_TRY(solve(c, &f, 0.8, 0.95));
+  AQR_TRY(aqr_parallel(c, n, limit, &f, 0.95, 1));
+  damp(&f);
+  AQR_TRY(aqr_parallel(c, n, apply, &f, 1, 1));
 done:
   release(c, &f);
   return status;

@@ -22,6 +22,8 @@ aqr_vertex aqr_middle(const aqr_polygon_mesh* m, aqr_index h)
   r.kind = m->edge_type[h >> 1] == AQR_LINE_BOUNDARY  ? AQR_VERTEX_BOUNDARY
            : m->edge_type[h >> 1] == AQR_LINE_FEATURE ? AQR_VERTEX_FEATURE
                                                       : AQR_VERTEX_INTERIOR;
+  if (r.kind != AQR_VERTEX_INTERIOR)
+    r.place.bary[0] = r.place.bary[1] = r.place.bary[2] = 0; /* on the chain, but where is not known yet */
   return r;
 }
 

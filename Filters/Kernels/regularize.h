@@ -27,7 +27,8 @@ bool aqr_can_merge(const aqr_polygon_mesh* m, aqr_index h);
 /* Whether v is an inner vertex of valence two whose edges may become one. */
 bool aqr_can_join(const aqr_polygon_mesh* m, aqr_index v);
 
-/* A vertex in the middle of the edge of h: on its chain if it has one. */
+/* A vertex in the middle of the edge of h. On a chain its place is a face nearby with all weights 0, until the fit puts
+ * it there. */
 aqr_vertex aqr_middle(const aqr_polygon_mesh* m, aqr_index h);
 
 #endif

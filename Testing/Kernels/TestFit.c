@@ -4,6 +4,7 @@
 #include "cells.h"
 #include "closest.h"
 #include "fit.h"
+#include "regularize.h"
 
 #include <stdlib.h>
 
@@ -200,6 +201,38 @@ AQR_TEST(the_fit_does_not_depend_on_how_loops_are_divided)
   aqr_polygon_mesh_free(&c, &m);
   aqr_polygon_mesh_free(&d, &n);
   free_surface(&s);
+}
+
+/* One face around which a single edge runs from a vertex back to it, as around a hole smaller than the spacing. */
+AQR_TEST(a_border_with_a_single_vertex_opens_to_a_triangle)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 12, 12, false, on_sheet, &s));
+  CHECK(sheet_of_quads(&c, 1, 1, &m));
+  set_places(&s, &m);
+  for (unsigned i = 0; i < 3 && m.n_vertices > 1; i++)
+  {
+    for (aqr_index h = 0; h < m.n_half_edges; h++)
+      if (aqr_pm_edge_lives(&m, h) && aqr_pm_from(&m, h) == 0 && aqr_pm_to(&m, h) != 0 && aqr_pm_contract(&m, h))
+        break;
+    CHECK(aqr_pm_compact(&c, &m) == AQR_OK);
+  }
+  CHECK(m.n_vertices == 1 && m.n_half_edges == 2 && m.n_faces == 1);
+  CHECK(aqr_regularize(&c, &m) == AQR_OK && aqr_fit(&c, &s, &m) == AQR_OK);
+  CHECK(m.n_vertices == 3 && aqr_pm_is_regular(&m));
+  double x = 0, y = 0;
+  for (size_t v = 0; v < m.n_vertices; v++)
+  {
+    x += m.vertices[v].position.x;
+    y += m.vertices[v].position.y;
+  }
+  /* thirds of the way around the unit square */
+  CHECK(fabs(x - 4.0 / 3) < 1e-9 && fabs(y - 4.0 / 3) < 1e-9);
+  aqr_polygon_mesh_free(&c, &m);
+  free_surface(&s);
+  CHECK(c.bytes == 0);
 }
 
 AQR_TEST_MAIN
