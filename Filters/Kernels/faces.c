@@ -92,9 +92,25 @@ static double local_size(const aqr_polygon_mesh* m, aqr_index h)
   return fmin(m->vertices[aqr_pm_from(m, h)].size, m->vertices[aqr_pm_to(m, h)].size);
 }
 
+/* Whether the chain through the edge of h runs straight on, up to twenty degrees, at the end that is given up. */
+static bool keeps_chain(const aqr_polygon_mesh* m, aqr_index h)
+{
+  if (!aqr_pm_on_chain(m, h))
+    return true;
+  aqr_index t = m->vertices[aqr_pm_to(m, h)].kind > m->vertices[aqr_pm_from(m, h)].kind ? h : h ^ 1;
+  vec3 v = aqr_pm_point(m, aqr_pm_from(m, t)), a = v3_sub(v, aqr_pm_point(m, aqr_pm_to(m, t)));
+  for (aqr_index k = aqr_pm_next_around(m, t); k != t; k = aqr_pm_next_around(m, k))
+  {
+    vec3 b = v3_sub(aqr_pm_point(m, aqr_pm_to(m, k)), v);
+    if (aqr_pm_on_chain(m, k) && !(v3_dot(a, b) > 0.94 * v3_norm(a) * v3_norm(b)))
+      return false;
+  }
+  return true;
+}
+
 static bool contract_if(aqr_polygon_mesh* m, aqr_index h, double least)
 {
-  if (!aqr_can_contract(m, h))
+  if (!aqr_can_contract(m, h) || !keeps_chain(m, h))
     return false;
   aqr_vertex middle = meeting(m, h);
   return contraction_gain(m, h, &middle) >= least && aqr_contract(m, h, &middle) != AQR_NONE;

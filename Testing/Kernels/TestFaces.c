@@ -64,6 +64,44 @@ AQR_TEST(corners_of_the_boundary_stay_where_they_are)
   }
 }
 
+/* A crease around the torus, drawn along one ring of its grid. */
+AQR_TEST(a_crease_stays_closed_and_on_its_curve)
+{
+  for (unsigned seed = 1; seed <= 100; seed++)
+  {
+    aqr_context c = { 0 };
+    aqr_polygon_mesh m = { 0 };
+    unsigned edges = 0, on_crease = 0;
+    CHECK(torus_of_quads(&c, 24, 8, &m));
+    for (size_t v = 0; v < m.n_vertices; v += 8)
+    {
+      m.vertices[v].kind = AQR_VERTEX_FEATURE;
+      aqr_index h = aqr_pm_find(&m, (aqr_index)v, (aqr_index)((v + 8) % m.n_vertices));
+      m.edge_type[h >> 1] = AQR_LINE_FEATURE;
+    }
+    unsigned state = seed;
+    for (unsigned k = 0; k < 150; k++)
+    {
+      aqr_index h = next_random(&state) % (aqr_index)m.n_half_edges;
+      if (aqr_pm_edge_lives(&m, h) && !aqr_pm_on_chain(&m, h))
+        aqr_pm_remove_edge(&m, h);
+    }
+    CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+    for (aqr_index h = 0; h < m.n_half_edges; h += 2)
+      if (m.edge_type[h >> 1] == AQR_LINE_FEATURE)
+      {
+        vec3 p = aqr_pm_point(&m, aqr_pm_from(&m, h));
+        edges++;
+        CHECK(m.vertices[aqr_pm_from(&m, h)].kind == AQR_VERTEX_FEATURE);
+        CHECK(fabs(hypot(p.x, p.y) - 1.4) < 1e-9 && fabs(p.z) < 1e-9);
+      }
+    for (size_t v = 0; v < m.n_vertices; v++)
+      on_crease += m.vertices[v].kind == AQR_VERTEX_FEATURE;
+    CHECK(edges >= 3 && on_crease == edges);
+    aqr_polygon_mesh_free(&c, &m);
+  }
+}
+
 /* Two lines that end on a third from both sides, a tenth of a cell apart. */
 AQR_TEST(t_joints_that_face_each_other_become_one_crossing)
 {
