@@ -20,7 +20,8 @@ static const double rounding = 6e-8; /* of coordinates that were single precisio
 static const double proper_tilt = 0.1;
 static const double weak = 0.6;        /* of the angle: how far hysteresis goes down */
 static const double straight = 0.7071; /* cosine of the turn that hysteresis follows */
-static const double roughest = 0.35;   /* mean dihedral around a crease, relative to its own */
+static const double roughest = 0.35;   /* mean dihedral around an edge of a crease, relative to its own */
+static const double rough = 0.125;     /* the same, on average over a crease */
 static const double zigzag = 0.4;      /* radians per edge that a chain may turn back and forth */
 
 typedef struct crease_edge
@@ -279,7 +280,8 @@ typedef struct run
   size_t first, count; /* into runs.edges */
   aqr_index end[2];
   double length;
-  bool free[2]; /* nothing goes on at this end */
+  double roughness; /* mean of its edges */
+  bool free[2];     /* nothing goes on at this end */
   bool closed, dropped;
 } run;
 
@@ -344,12 +346,15 @@ static bool collect_run(detector* d, runs* r, aqr_index start)
   {
     r->seen[e] = 1;
     r->edges[r->n_edges++] = e;
-    a.length += edge_length(d->s, d->edges[e].h);
+    double length = edge_length(d->s, d->edges[e].h);
+    a.length += length;
+    a.roughness += length * (double)d->edges[e].roughness;
     v = other_end(d, e, v);
     e = follow(d, e, v);
   }
   a.end[1] = v;
   a.count = r->n_edges - a.first;
+  a.roughness /= fmax(a.length, 1e-300);
   for (unsigned k = 0; k < 2; k++)
     a.free[k] = !closed && degree(d, a.end[k]) == 1 && !on_border(d->s, a.end[k]);
   r->list[r->n++] = a;
@@ -421,7 +426,8 @@ static aqr_status prune(detector* d)
       run* a = &r.list[i];
       bool loose = a->free[0] || a->free[1];
       a->dropped = (a->closed && a->length < d->min_length) ||
-                   (loose && a->length < d->min_length && goes_first(shortest, a)) || wobble(d, &r, a) > zigzag;
+                   (loose && a->length < d->min_length && goes_first(shortest, a)) || wobble(d, &r, a) > zigzag ||
+                   a->roughness > rough;
     }
     for (size_t i = 0; i < r.n; i++)
       for (size_t j = 0; r.list[i].dropped && j < r.list[i].count; j++)
@@ -435,6 +441,52 @@ done:
   AQR_DROP(d->c, r.list, r.capacity);
   AQR_DROP(d->c, r.edges, n);
   AQR_DROP(d->c, r.seen, n);
+  return status;
+}
+
+/* Drops connected clusters of creases that fit into a box smaller than the shortest chain, unless they are one loop:
+ * folds and spikes of a scan, whose runs are all short but hold each other. */
+static aqr_status drop_clusters(detector* d)
+{
+  const aqr_surface* s = d->s;
+  size_t n = d->n_edges;
+  aqr_index* queue = AQR_NEW(d->c, aqr_index, n);
+  uint8_t* seen = AQR_NEW0(d->c, uint8_t, n);
+  aqr_status status = AQR_OK;
+  AQR_REQUIRE(queue && seen, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(aqr_step(d->c, 0.8), AQR_CANCELLED);
+  for (size_t i = 0; i < n; i++)
+  {
+    if (!d->edges[i].kept || seen[i])
+      continue;
+    size_t tail = 0;
+    bool branches = false;
+    vec3 low = aqr_point(s, d->edges[i].end[0]), high = low;
+    seen[i] = 1;
+    queue[tail++] = (aqr_index)i;
+    for (size_t head = 0; head < tail; head++)
+      for (unsigned k = 0; k < 2; k++)
+      {
+        aqr_index v = d->edges[queue[head]].end[k];
+        vec3 p = aqr_point(s, v);
+        low = v3(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
+        high = v3(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+        branches |= degree(d, v) > 2;
+        for (size_t j = d->first[v]; j < d->first[v + 1]; j++)
+        {
+          aqr_index g = d->incident[j];
+          if (!d->edges[g].kept || seen[g])
+            continue;
+          seen[g] = 1;
+          queue[tail++] = g;
+        }
+      }
+    for (size_t j = 0; branches && v3_norm(v3_sub(high, low)) < d->min_length && j < tail; j++)
+      d->edges[queue[j]].kept = false;
+  }
+done:
+  AQR_DROP(d->c, queue, n);
+  AQR_DROP(d->c, seen, n);
   return status;
 }
 
@@ -455,6 +507,7 @@ aqr_status aqr_features_detect(
   AQR_TRY(link_candidates(&d));
   AQR_TRY(grow(&d));
   AQR_TRY(prune(&d));
+  AQR_TRY(drop_clusters(&d));
   report->feature_edges = 0;
   for (size_t i = 0; i < d.n_edges; i++)
     if (d.edges[i].kept)
@@ -473,6 +526,14 @@ done:
 
 /* ---- chains ---- */
 
+enum
+{
+  WALK_SMOOTH,
+  WALK_RAGGED, /* turns sharply, and back at once */
+  WALK_CORNER,
+  WALK_WIDE_CORNER
+};
+
 typedef struct linker
 {
   aqr_context* c;
@@ -486,9 +547,12 @@ typedef struct linker
   aqr_chain* chains;
   size_t n_chains, chain_capacity;
   size_t n_done;   /* of out->half_edges */
-  aqr_index* walk; /* half-edges of the chain being built */
-  uint8_t* corner; /* per half-edge of it: its start is a corner */
-  double *turn, *wide;
+  aqr_index* walk; /* half-edges of the run between branches that is being cut into chains */
+  size_t n_walk;
+  bool closed;
+  uint8_t* corner; /* per half-edge of the run: WALK_... of its start */
+  double *wide, *arc;
+  double reach;
 } linker;
 
 static bool is_listed(const aqr_surface* s, aqr_index h)
@@ -523,10 +587,10 @@ static aqr_status link_edges(linker* l)
   l->incident = AQR_NEW(l->c, aqr_index, 2 * l->n_edges);
   l->walk = AQR_NEW(l->c, aqr_index, l->n_edges);
   l->corner = AQR_NEW(l->c, uint8_t, l->n_edges);
-  l->turn = AQR_NEW(l->c, double, l->n_edges);
+  l->arc = AQR_NEW(l->c, double, l->n_edges + 1);
   l->wide = AQR_NEW(l->c, double, l->n_edges);
   l->seen = AQR_NEW0(l->c, uint8_t, 3 * s->n_faces);
-  if (!l->incident || !l->walk || !l->corner || !l->turn || !l->wide || !l->seen)
+  if (!l->incident || !l->walk || !l->corner || !l->arc || !l->wide || !l->seen)
     return AQR_OUT_OF_MEMORY;
   for (aqr_index h = 0; h < 3 * s->n_faces; h++)
     if (is_listed(s, h))
@@ -569,181 +633,179 @@ static aqr_index chain_previous(const linker* l, aqr_index h)
 
 /* ---- corners ---- */
 
-static vec3 walk_start(const linker* l, size_t i)
+static const double reach_edges = 4;          /* mean edge lengths on either side over which a ragged border turns */
+static const double reach_of_loop = 1.0 / 12; /* at most: a circle turns by 30 degrees over that */
+
+/* Positions along the run in `walk` count on beyond its ends where it is closed. */
+static size_t wrapped(const linker* l, ptrdiff_t i)
 {
-  return aqr_point(l->s, aqr_from(l->s, l->walk[i]));
-}
-static vec3 walk_end(const linker* l, size_t i)
-{
-  return aqr_point(l->s, aqr_to(l->s, l->walk[i]));
+  ptrdiff_t n = (ptrdiff_t)l->n_walk, r = i % n;
+  return (size_t)(r < 0 ? r + n : r);
 }
 
-static double angle_between(vec3 a, vec3 b)
+static vec3 walk_point(const linker* l, ptrdiff_t i)
 {
-  return atan2(v3_norm(v3_cross(a, b)), v3_dot(a, b));
+  if (!l->closed && (size_t)i == l->n_walk)
+    return aqr_point(l->s, aqr_to(l->s, l->walk[i - 1]));
+  return aqr_point(l->s, aqr_from(l->s, l->walk[wrapped(l, i)]));
 }
 
-static vec3 turn_axis(const linker* l, size_t i, size_t before)
+static double walk_arc(const linker* l, ptrdiff_t i)
 {
-  return v3_cross(v3_sub(walk_end(l, before), walk_start(l, before)), v3_sub(walk_end(l, i), walk_start(l, i)));
+  ptrdiff_t n = (ptrdiff_t)l->n_walk;
+  if (i < 0)
+    return l->arc[i + n] - l->arc[n];
+  return i > n ? l->arc[i - n] + l->arc[n] : l->arc[i];
 }
 
-/* Steps from edge i by `by`, around a closed chain; n where an open one ends. */
-static size_t step_by(size_t i, int by, size_t n, bool closed)
+/* Whether position i has an edge on either side, seen from `about` and no farther than once around. */
+static bool is_inside(const linker* l, ptrdiff_t i, ptrdiff_t about)
 {
-  if (by < 0)
-    return i > 0 ? i - 1 : closed ? n - 1 : n;
-  return i + 1 < n ? i + 1 : closed ? 0 : n;
+  ptrdiff_t n = (ptrdiff_t)l->n_walk;
+  return l->closed ? 2 * (i > about ? i - about : about - i) < n : i > 0 && i < n;
 }
 
-/* Turn at the start of edge i between chords of length up to `reach` on either side. */
-static double wide_turn(const linker* l, size_t i, size_t n, bool closed, double reach)
+static double turn_between(const linker* l, ptrdiff_t j, ptrdiff_t i, ptrdiff_t k, vec3* axis)
 {
-  vec3 p = walk_start(l, i), back = p, on = p;
-  double arc = 0;
-  for (size_t k = i, steps = 0; k < n && arc < reach && steps < n; steps++, k = step_by(k, 1, n, closed))
+  vec3 p = walk_point(l, i), a = v3_sub(p, walk_point(l, j)), b = v3_sub(walk_point(l, k), p);
+  *axis = v3_cross(a, b);
+  return atan2(v3_norm(*axis), v3_dot(a, b));
+}
+
+/* Turn at position i between chords that reach a few edges to either side. */
+static double wide_turn(const linker* l, ptrdiff_t i)
+{
+  ptrdiff_t j = i - 1, k = i + 1;
+  vec3 axis;
+  while (is_inside(l, j, i) && walk_arc(l, i) - walk_arc(l, j) < l->reach)
+    j--;
+  while (is_inside(l, k, i) && walk_arc(l, k) - walk_arc(l, i) < l->reach)
+    k++;
+  return turn_between(l, j, i, k, &axis);
+}
+
+/* Whether the turns beside the one at i, opposite to it, take back half of it: a ragged border, no corner. */
+static bool is_ragged(const linker* l, ptrdiff_t i)
+{
+  vec3 axis, other;
+  double turn = turn_between(l, i - 1, i, i + 1, &axis), opposite = 0;
+  for (ptrdiff_t k = i - 2; k <= i + 2; k++)
   {
-    arc += edge_length(l->s, l->walk[k]);
-    on = walk_end(l, k);
-  }
-  arc = 0;
-  for (size_t k = step_by(i, -1, n, closed), steps = 0; k < n && arc < reach && steps < n;
-       steps++, k = step_by(k, -1, n, closed))
-  {
-    arc += edge_length(l->s, l->walk[k]);
-    back = walk_start(l, k);
-  }
-  return angle_between(v3_sub(p, back), v3_sub(on, p));
-}
-
-/* Whether turns beside the one at i, opposite to it, take back half of it: a ragged border, no corner. */
-static bool is_ragged(const linker* l, size_t i, size_t n, bool closed)
-{
-  double opposite = 0;
-  size_t before = step_by(i, -1, n, closed);
-  vec3 axis = turn_axis(l, i, before);
-  for (int by = -1; by <= 1; by += 2)
-  {
-    size_t k = i;
-    for (unsigned steps = 0; steps < 2; steps++)
-    {
-      k = step_by(k, by, n, closed);
-      if (k >= n || k == i)
-        break;
-      size_t j = step_by(k, -1, n, closed);
-      if (j < n && v3_dot(turn_axis(l, k, j), axis) < 0)
-        opposite += l->turn[k];
-    }
-  }
-  return 2 * opposite > l->turn[i];
-}
-
-/* Marks the corners of the chain in `walk`. A clean turn is a corner at once; along a ragged border the turn is judged
- * over a few edges on either side, and only the sharpest point within that reach is one. */
-static void find_corners(linker* l, size_t n, bool closed)
-{
-  bool seam = aqr_is_seam(l->s, l->walk[0]);
-  double length = 0;
-  for (size_t i = 0; i < n; i++)
-    length += edge_length(l->s, l->walk[i]);
-  double mean = length / (double)n, reach = 4 * mean;
-  if (closed)
-    reach = fmin(reach, length / 12); /* a circle turns by 30 degrees over that */
-  for (size_t i = 0; i < n; i++)
-  {
-    size_t before = step_by(i, -1, n, closed);
-    l->corner[i] = 0;
-    l->turn[i] = l->wide[i] = 0;
-    if (before < n)
-    {
-      l->turn[i] =
-        angle_between(v3_sub(walk_end(l, before), walk_start(l, before)), v3_sub(walk_end(l, i), walk_start(l, i)));
-      l->wide[i] = wide_turn(l, i, n, closed, reach);
-    }
-  }
-  for (size_t i = 0; i < n; i++)
-    l->corner[i] = l->turn[i] > l->corner_angle && (seam || !is_ragged(l, i, n, closed));
-  for (size_t i = 0; i < n && !seam && reach >= 2 * mean; i++)
-  {
-    if (l->wide[i] <= l->corner_angle || l->corner[i])
+    if (k == i || !is_inside(l, k, i))
       continue;
-    bool sharpest = true;
-    for (int by = -1; by <= 1; by += 2)
-    {
-      double arc = 0;
-      for (size_t k = i, steps = 0; steps < n && sharpest; steps++)
-      {
-        arc += edge_length(l->s, l->walk[by > 0 ? k : step_by(k, -1, n, closed) < n ? step_by(k, -1, n, closed) : k]);
-        k = step_by(k, by, n, closed);
-        if (k >= n || k == i || arc > reach)
-          break;
-        sharpest = !l->corner[k] && (l->wide[k] < l->wide[i] || (!(l->wide[k] > l->wide[i]) && k > i));
-      }
-    }
-    if (sharpest)
-      l->corner[i] = 2;
+    double there = turn_between(l, k - 1, k, k + 1, &other);
+    if (v3_dot(axis, other) < 0)
+      opposite += there;
   }
+  return 2 * opposite > turn;
+}
+
+/* Marks where the turn over a few edges is sharp and sharper than at any other point within that reach. Only near
+ * ragged points: a smooth curve has no corner however fast it turns. */
+static void find_wide_corners(linker* l)
+{
+  ptrdiff_t n = (ptrdiff_t)l->n_walk;
+  for (ptrdiff_t i = l->closed ? 0 : 1; i < n; i++)
+  {
+    bool sharpest = l->wide[i] > l->corner_angle && l->corner[i] != WALK_CORNER, ragged = l->corner[i] == WALK_RAGGED;
+    for (int by = -1; by <= 1 && sharpest; by += 2)
+      for (ptrdiff_t k = i + by; is_inside(l, k, i) && sharpest; k += by)
+      {
+        size_t at = wrapped(l, k);
+        if (fabs(walk_arc(l, k) - walk_arc(l, i)) > l->reach)
+          break;
+        ragged |= l->corner[at] == WALK_RAGGED;
+        sharpest = l->corner[at] != WALK_CORNER && l->corner[at] != WALK_WIDE_CORNER && l->wide[at] <= l->wide[i];
+      }
+    if (sharpest && ragged)
+      l->corner[i] = WALK_WIDE_CORNER;
+  }
+}
+
+/* A clean turn is a corner at once. Along the ragged border of a scan, where every other edge turns sharply, turns are
+ * judged over a few edges; creases were rid of zigzag when they were found. */
+static void find_corners(linker* l)
+{
+  bool seam = aqr_is_seam(l->s, l->walk[0]), any_ragged = false;
+  ptrdiff_t n = (ptrdiff_t)l->n_walk;
+  l->arc[0] = 0;
+  for (ptrdiff_t i = 0; i < n; i++)
+    l->arc[i + 1] = l->arc[i] + edge_length(l->s, l->walk[i]);
+  double mean = l->arc[n] / (double)n;
+  l->reach = reach_edges * mean;
+  if (l->closed)
+    l->reach = fmin(l->reach, reach_of_loop * l->arc[n]);
+  l->corner[0] = WALK_SMOOTH;
+  for (ptrdiff_t i = l->closed ? 0 : 1; i < n; i++)
+  {
+    vec3 axis;
+    l->corner[i] = WALK_SMOOTH;
+    if (turn_between(l, i - 1, i, i + 1, &axis) > l->corner_angle)
+      l->corner[i] = !seam && is_ragged(l, i) ? WALK_RAGGED : WALK_CORNER;
+    any_ragged |= l->corner[i] == WALK_RAGGED;
+  }
+  if (!any_ragged || l->reach < 2 * mean)
+    return;
+  for (ptrdiff_t i = l->closed ? 0 : 1; i < n; i++)
+    l->wide[i] = wide_turn(l, i);
+  find_wide_corners(l);
 }
 
 /* ---- chains ---- */
 
-static bool add_piece(linker* l, size_t begin, size_t end, size_t n, bool closed)
+/* Adds edges [begin, end) of the run as a chain. */
+static bool add_chain(linker* l, size_t begin, size_t end, bool closed)
 {
   aqr_chains* o = l->out;
   if (!AQR_RESERVE(l->c, l->chains, l->chain_capacity, l->n_chains + 1))
     return false;
-  aqr_chain a = { l->n_done, end - begin, closed, aqr_is_seam(l->s, l->walk[begin % n]) };
+  l->chains[l->n_chains++] = (aqr_chain){ l->n_done, end - begin, closed, aqr_is_seam(l->s, l->walk[0]) };
   for (size_t i = begin; i < end; i++)
   {
-    aqr_index h = l->walk[i % n];
+    aqr_index h = l->walk[i % l->n_walk];
     o->half_edges[l->n_done++] = h;
-    if (i > begin || closed)
-      o->is_node[clean_from(l->s, h)] = 2;
-    else
-      o->is_node[clean_from(l->s, h)] = 1;
+    o->is_node[clean_from(l->s, h)] = i > begin || closed ? 2 : 1;
+    if (i + 1 == end && !closed)
+      o->is_node[clean_to(l->s, h)] = 1;
   }
-  if (!closed)
-    o->is_node[clean_to(l->s, l->walk[(end - 1) % n])] = 1;
-  l->chains[l->n_chains++] = a;
   return true;
 }
 
 /* The whole run through h between branches, cut into chains at its corners. */
 static bool add_run(linker* l, aqr_index h)
 {
-  aqr_index start = h;
-  size_t n = 0;
-  for (aqr_index g = chain_previous(l, h); g != AQR_NONE && g != h; g = chain_previous(l, g))
+  aqr_index start = h, g = chain_previous(l, h);
+  for (size_t i = 0; g != AQR_NONE && g != h && i < l->n_edges; i++)
+  {
     start = g;
-  bool closed = chain_previous(l, start) != AQR_NONE;
-  if (closed)
+    g = chain_previous(l, g);
+  }
+  l->closed = g == h;
+  l->n_walk = 0;
+  if (l->closed)
     start = h;
-  aqr_index g = start;
+  g = start;
   do
   {
     l->seen[g] = 1;
     if (aqr_any_twin(l->s, g) != AQR_NONE)
       l->seen[aqr_any_twin(l->s, g)] = 1;
-    l->walk[n++] = g;
+    l->walk[l->n_walk++] = g;
     g = chain_next(l, g);
-  } while (g != AQR_NONE && g != start && n < l->n_edges);
-  find_corners(l, n, closed);
-  size_t begin = 0;
-  if (closed)
-  {
-    while (begin < n && !l->corner[begin])
-      begin++;
-    if (begin == n)
-      return add_piece(l, 0, n, n, true);
-  }
+  } while (g != AQR_NONE && g != start && l->n_walk < l->n_edges);
+  find_corners(l);
+  size_t begin = 0, n = l->n_walk;
+  while (l->closed && begin < n && l->corner[begin] < WALK_CORNER)
+    begin++;
+  if (begin == n)
+    return add_chain(l, 0, n, true);
   for (size_t i = begin + 1, last = begin + n; i <= last; i++)
-  {
-    if (i < last && !l->corner[i % n])
-      continue;
-    if (!add_piece(l, begin, i, n, false))
-      return false;
-    begin = i;
-  }
+    if (i == last || l->corner[i % n] >= WALK_CORNER)
+    {
+      if (!add_chain(l, begin, i, false))
+        return false;
+      begin = i;
+    }
   return true;
 }
 
@@ -777,7 +839,7 @@ done:
   AQR_DROP(c, l.incident, 2 * l.n_edges);
   AQR_DROP(c, l.walk, l.n_edges);
   AQR_DROP(c, l.corner, l.n_edges);
-  AQR_DROP(c, l.turn, l.n_edges);
+  AQR_DROP(c, l.arc, l.n_edges + 1);
   AQR_DROP(c, l.wide, l.n_edges);
   AQR_DROP(c, l.seen, 3 * s->n_faces);
   if (status != AQR_OK)
