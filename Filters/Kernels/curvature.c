@@ -16,10 +16,10 @@ enum
   batch_work = 1 << 18 /* points to visit between two looks at the progress hook */
 };
 
-static const double least_radius = 2;    /* in mean lengths of the edges around the point */
-static const double shared_radius = 3.5; /* likewise: larger balls, of 40 points or more, are shared */
-static const double spacing = 0.4;       /* between shared balls, in radii: every point is this near to one */
-static const double reach = 0.65;        /* up to here a shared ball is blended in, in radii */
+static const double least_radius = 2; /* in mean lengths of the edges around the point */
+static const double full_ball = 14;   /* areas of a point in a squared radius: some 40 points inside */
+static const double spacing = 0.4;    /* between shared balls, in radii: every point is this near to one */
+static const double reach = 0.65;     /* up to here a shared ball is blended in, in radii */
 
 typedef struct lump /* eight numbers, a cache line */
 {
@@ -140,6 +140,19 @@ static void lump_points(void* data, size_t begin, size_t end)
 static double radius_at(const job* j, aqr_index v)
 {
   return fmax(j->radius, least_radius * j->length[v]);
+}
+
+/* Of balls that hold many points neighbours may share one. */
+static bool shares(const job* j, aqr_index v)
+{
+  double r = radius_at(j, v);
+  return r * r > full_ball * j->lumps[v].area;
+}
+
+/* Whether a ball of this radius may stand in for that of v: not where it averages over far more. */
+static bool may_stand_in(const job* j, double radius, aqr_index v)
+{
+  return radius < 1.5 * radius_at(j, v);
 }
 
 typedef struct ball
@@ -434,17 +447,17 @@ static aqr_status choose_centres(aqr_context* c, job* j, double from, double to)
     AQR_TRY(count_work(c, &work, 1, from + (to - from) * v / (double)s->n_points));
     if (j->covered[v] != uncovered)
       continue;
-    bool shares = j->radius > shared_radius * j->length[v];
-    j->covered[v] = shares ? shared_ball : own_ball;
+    double radius = radius_at(j, v);
+    j->covered[v] = shares(j, v) ? shared_ball : own_ball;
     j->centres[j->n_centres++] = v;
-    if (!shares)
+    if (j->covered[v] == own_ball)
       continue;
-    AQR_TRY(disk(c, j, j->slot, v, spacing * j->radius, &n));
+    AQR_TRY(disk(c, j, j->slot, v, spacing * radius, &n));
     work += n;
     for (size_t i = 0; i < n; i++)
     {
       aqr_index w = j->slot->queue[i];
-      if (j->covered[w] == uncovered && j->radius > shared_radius * j->length[w])
+      if (j->covered[w] == uncovered && shares(j, w) && may_stand_in(j, radius, w))
         j->covered[w] = blended;
     }
   }
@@ -456,7 +469,6 @@ done:
 static aqr_status blend_balls(aqr_context* c, job* j, double from, double to)
 {
   aqr_status status = AQR_OK;
-  double limit = reach * j->radius;
   size_t n, work = 0;
   for (size_t i = 0; i < j->n_centres; i++)
   {
@@ -464,12 +476,13 @@ static aqr_status blend_balls(aqr_context* c, job* j, double from, double to)
     aqr_index v = j->centres[i];
     if (j->covered[v] != shared_ball)
       continue;
+    double radius = radius_at(j, v), limit = reach * radius;
     AQR_TRY(disk(c, j, j->slot, v, limit, &n));
     work += n;
     for (size_t m = 0; m < n; m++)
     {
       aqr_index w = j->slot->queue[m];
-      if (j->covered[w] != blended)
+      if (j->covered[w] != blended || !may_stand_in(j, radius, w))
         continue;
       double x = 1 - v3_norm2(v3_sub(aqr_point(j->s, w), aqr_point(j->s, v))) / (limit * limit);
       j->weight[w] += x * x;

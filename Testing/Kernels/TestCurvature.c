@@ -290,6 +290,7 @@ static void stop_at_every(bool allocation, aqr_status expected)
       break;
   }
   CHECK(stops > 4);
+  e.c.hooks = (aqr_hooks){ 0 };
   finish(&e, &m);
 }
 
@@ -301,6 +302,21 @@ AQR_TEST(failed_allocation_leaks)
 AQR_TEST(cancelling_is_not_heard)
 {
   stop_at_every(false, AQR_CANCELLED);
+}
+
+/* The hook is asked after so many visits to points, so how often it was asked tells the work. */
+AQR_TEST(needles_make_work_quadratic)
+{
+  shape m = shape_grid(2000, 10, true, false, 0, 14, place_on_cylinder);
+  estimate e;
+  load(&e, &m);
+  quota q = { .looks = 1000000 };
+  e.c.hooks = (aqr_hooks){ .user = &q, .progress = look };
+  CHECK(aqr_curvature_tensors(&e.c, &e.s, 0.01, &e.t) == AQR_OK);
+  CHECK_BELOW(1e6 - (double)q.looks, 50);
+  CHECK_BELOW(errors_of(&e, cylinder_gradient).angle, 3);
+  e.c.hooks = (aqr_hooks){ 0 };
+  finish(&e, &m);
 }
 
 AQR_TEST_MAIN
