@@ -14,14 +14,6 @@ static const double sample_band = 1e-7; /* samples stay this far inside their ed
 static const double inward = 1e-6;      /* of the way to the middle of the triangle */
 static const double turn_error = 0.02;  /* radians a step may be off by its own estimate */
 
-static aqr_complex cx(double x, double y)
-{
-  return (aqr_complex){ x, y };
-}
-static aqr_complex cx_mul(aqr_complex a, aqr_complex b)
-{
-  return cx(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
-}
 static aqr_complex cx_conj(aqr_complex a)
 {
   return cx(a.x, -a.y);
@@ -42,26 +34,10 @@ static double cx_dot(aqr_complex a, aqr_complex b)
 {
   return a.x * b.x + a.y * b.y;
 }
-static aqr_complex cx_unit(aqr_complex a)
-{
-  double n = hypot(a.x, a.y);
-  return n > 0 ? cx(a.x / n, a.y / n) : cx(1, 0);
-}
 static aqr_complex cx_fourth(aqr_complex a)
 {
   aqr_complex b = cx_mul(a, a);
   return cx_mul(b, b);
-}
-
-/* The corner's cross as a unit complex number in a plane where the edges leaving the corner lie
- * along to_next and to_prev: measured from the edge nearer to the tangent plane (paper 2). */
-static aqr_complex flatten(vec3 n, vec3 direction, vec3 next, vec3 prev, aqr_complex to_next, aqr_complex to_prev)
-{
-  double a = v3_dot(next, n), b = v3_dot(prev, n);
-  bool use_next = a * a * v3_norm2(prev) <= b * b * v3_norm2(next);
-  vec3 p = v3_reject(use_next ? next : prev, n);
-  aqr_complex xi = cx_unit(cx(v3_dot(p, direction), v3_dot(n, v3_cross(p, direction))));
-  return cx_mul(cx_unit(use_next ? to_next : to_prev), xi);
 }
 
 /* Lays face f so that its corner `k` comes to `at` and its canonical +x axis to the unit number
@@ -93,8 +69,8 @@ static void lay(const aqr_tracer* t, aqr_index f, unsigned k, aqr_complex at, aq
   {
     size_t v = s->corner[3 * f + i];
     unsigned j = (i + 1) % 3, h = (i + 2) % 3;
-    chart->cross[i] = cx_fourth(flatten(v3_load(t->normal + 3 * v), v3_load(t->cross + 3 * v), e[i], v3_scale(e[h], -1),
-      cx_sub(chart->q[j], chart->q[i]), cx_sub(chart->q[h], chart->q[i])));
+    chart->cross[i] = cx_fourth(aqr_flatten(v3_load(t->normal + 3 * v), v3_load(t->cross + 3 * v), e[i],
+      v3_scale(e[h], -1), cx_sub(chart->q[j], chart->q[i]), cx_sub(chart->q[h], chart->q[i])));
   }
   chart->coherent = cx_dot(chart->cross[0], chart->cross[1]) > 0 && cx_dot(chart->cross[1], chart->cross[2]) > 0 &&
                     cx_dot(chart->cross[2], chart->cross[0]) > 0;

@@ -4,13 +4,9 @@
 #define AQR_TRACER_H
 
 #include "field.h"
+#include "flatten.h"
 #include "lines.h"
 #include "polygon_mesh.h"
-
-typedef struct aqr_complex
-{
-  double x, y;
-} aqr_complex;
 
 /* The parameterization context: one face laid isometrically into the plane. */
 typedef struct aqr_chart

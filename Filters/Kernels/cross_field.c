@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A smooth field of crosses: anchored to principal directions where they are trusted and to creases
+ * and borders, diffused over the rest. A point's cross is the fourth power z of a unit complex
+ * number in the frame (min direction, normal x min direction), so that quarter turns are all one:
+ * z = 1 is the principal cross. */
+#include "cross_field.h"
+#include "flatten.h"
+
+#include <string.h>
+
+enum
+{
+  sweeps = 40,
+  border_reach = 4, /* edges to either side that a border's tangent is taken from */
+  steps_between_polls = 4096
+};
+
+static const double firm = 0.8;        /* anchors of this weight do not move */
+static const double own_start = 0.1;   /* anchors of this weight start from their own direction */
+static const double pull = 4;          /* of a full anchor, against the mean of the neighbours */
+static const double half_strength = 2; /* curvature difference, the scaled surface's diagonal being 1 */
+static const double full_anisotropy = 0.5;
+static const double border_weight = 0.4;
+static const double seam_agreement = 0.866; /* of two edges up to 15 degrees apart: cos(4 * 15 / 2) */
+
+typedef struct rotor
+{
+  float x, y;
+} rotor;
+
+typedef struct job
+{
+  const aqr_surface* s;
+  const aqr_neighbours* around;
+  aqr_field* field;
+  double min_cosine;
+  aqr_index* previous; /* per point: the point before it along its border or seam, or AQR_NONE */
+  rotor* anchor;       /* per point: weight times direction */
+  rotor* z[2];         /* per point; 0 where not yet known */
+  aqr_index* slot;     /* per point: where it is in `active`, or AQR_NONE */
+  aqr_index* active;   /* points that are not firmly anchored, ascending */
+  size_t n_active;
+  aqr_index* first; /* n_active + 1: where each one's begin in `turn` */
+  rotor* turn;      /* brings a neighbour's z into the point's frame */
+  aqr_index* queue;
+  const rotor* from;
+  rotor* to;
+} job;
+
+static rotor narrow(aqr_complex a)
+{
+  return (rotor){ (float)a.x, (float)a.y };
+}
+static aqr_complex wide(rotor a)
+{
+  return cx((double)a.x, (double)a.y);
+}
+static double size(aqr_complex a)
+{
+  return sqrt(a.x * a.x + a.y * a.y);
+}
+
+/* The fourth power of d's direction in the point's frame; 0 where d has none there. */
+static aqr_complex in_frame(const aqr_field* field, size_t v, vec3 d)
+{
+  vec3 n = v3_load(field->normal + 3 * v), m = v3_load(field->min_direction + 3 * v);
+  double x = v3_dot(d, m), y = v3_dot(d, v3_cross(n, m)), r2 = x * x + y * y;
+  if (!(r2 > 0))
+    return cx(0, 0);
+  aqr_complex square = cx((x * x - y * y) / r2, 2 * x * y / r2);
+  return cx_mul(square, square);
+}
+
+/* How far the principal cross is to be believed: coherent around the point, distinct in the ratio of
+ * the curvatures, and not just the noise of a flat place. */
+static double trust(const job* j, size_t v)
+{
+  const aqr_field* f = j->field;
+  double a = f->k_min[v], b = f->k_max[v], strength = b - a, all = fabs(a) + fabs(b);
+  if (!(strength > 0 && j->min_cosine < 1))
+    return 0;
+  double ratio = fmin(strength / all / full_anisotropy, 1);
+  double coherent = fmax(0, ((double)f->point_confidence[v] - j->min_cosine) / (1 - j->min_cosine));
+  coherent = 1 - (1 - coherent) * (1 - coherent);
+  return coherent * ratio * ratio * (3 - 2 * ratio) * strength / (strength + half_strength);
+}
+
+/* The edge of border or seam that leaves v, as seen in the frame of `at`. */
+static aqr_complex border_edge(const job* j, aqr_index v, aqr_index at)
+{
+  const aqr_surface* s = j->s;
+  return in_frame(j->field, at, v3_sub(aqr_point(s, aqr_to(s, j->s->fan[v])), aqr_point(s, v)));
+}
+
+static bool leaves_seam(const job* j, aqr_index v)
+{
+  return v != AQR_NONE && aqr_is_seam(j->s, j->s->fan[v]);
+}
+
+/* Creases hold the cross firmly, but not at their bends. */
+static aqr_complex seam_anchor(const job* j, aqr_index v)
+{
+  aqr_complex a = border_edge(j, v, v), b = border_edge(j, j->previous[v], v);
+  aqr_complex mean = cx((a.x + b.x) / 2, (a.y + b.y) / 2);
+  return size(mean) >= seam_agreement ? cx_unit(mean) : cx(0, 0);
+}
+
+/* The tangent of a boundary over several edges, the weaker the more these disagree: scanned borders
+ * are ragged. */
+static aqr_complex boundary_anchor(const job* j, aqr_index v)
+{
+  aqr_complex sum = cx(0, 0);
+  double weights = 0;
+  aqr_index ahead = v, behind = j->previous[v];
+  for (int i = 0; i < border_reach; i++)
+  {
+    double w = border_reach - i;
+    const aqr_index ends[2] = { ahead, behind };
+    for (int k = 0; k < 2; k++)
+      if (ends[k] != AQR_NONE && aqr_is_boundary(j->s, j->s->fan[ends[k]]))
+      {
+        aqr_complex a = border_edge(j, ends[k], v);
+        sum = cx(sum.x + w * a.x, sum.y + w * a.y);
+        weights += w;
+      }
+    ahead = ahead == AQR_NONE || !aqr_is_boundary(j->s, j->s->fan[ahead]) ? AQR_NONE : aqr_to(j->s, j->s->fan[ahead]);
+    behind = behind == AQR_NONE ? AQR_NONE : j->previous[behind];
+  }
+  double agreement = weights > 0 ? size(sum) / weights : 0;
+  aqr_complex unit = cx_unit(sum);
+  return cx(border_weight * agreement * agreement * unit.x, border_weight * agreement * agreement * unit.y);
+}
+
+static void anchors(void* data, size_t begin, size_t end)
+{
+  const job* j = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    double w = trust(j, v);
+    aqr_complex a = cx(w, 0);
+    if (j->previous[v] != AQR_NONE)
+    {
+      aqr_complex b = cx(0, 0);
+      if (leaves_seam(j, (aqr_index)v) || leaves_seam(j, j->previous[v]))
+      {
+        b = seam_anchor(j, (aqr_index)v);
+        if (size(b) > 0)
+          a = b;
+      }
+      else
+      {
+        b = boundary_anchor(j, (aqr_index)v);
+        a = cx(a.x + (1 - w) * (1 - w) * b.x, a.y + (1 - w) * (1 - w) * b.y);
+      }
+    }
+    j->anchor[v] = narrow(a);
+    double r = size(a);
+    j->z[0][v] = r >= own_start ? narrow(cx(a.x / r, a.y / r)) : (rotor){ 0, 0 };
+    j->slot[v] = r < firm ? 0 : AQR_NONE;
+  }
+}
+
+/* Parallel transport of w's frame to v's, over the rotation that takes one normal to the other. */
+static void turns(void* data, size_t begin, size_t end)
+{
+  const job* j = data;
+  const aqr_field* f = j->field;
+  for (size_t a = begin; a < end; a++)
+  {
+    size_t v = j->active[a];
+    vec3 n = v3_load(f->normal + 3 * v);
+    const aqr_index* point = j->around->point + j->around->first[v];
+    for (aqr_index i = j->first[a]; i < j->first[a + 1]; i++)
+    {
+      size_t w = point[i - j->first[a]];
+      vec3 m = v3_load(f->normal + 3 * w), d = v3_load(f->min_direction + 3 * w);
+      double both = 1 + v3_dot(n, m);
+      if (both > 0)
+        d = v3_madd(d, -v3_dot(d, n) / both, v3_add(n, m));
+      j->turn[i] = narrow(in_frame(f, v, d));
+    }
+  }
+}
+
+static aqr_complex mean_around(const job* j, const rotor* z, size_t a)
+{
+  const aqr_index* point = j->around->point + j->around->first[j->active[a]];
+  float x = 0, y = 0;
+  for (aqr_index i = j->first[a]; i < j->first[a + 1]; i++)
+  {
+    rotor t = j->turn[i], b = z[point[i - j->first[a]]];
+    x += t.x * b.x - t.y * b.y;
+    y += t.x * b.y + t.y * b.x;
+  }
+  double n = (double)(j->first[a + 1] - j->first[a]);
+  return n > 0 ? cx((double)x / n, (double)y / n) : cx(0, 0);
+}
+
+static void sweep(void* data, size_t begin, size_t end)
+{
+  const job* j = data;
+  for (size_t a = begin; a < end; a++)
+  {
+    size_t v = j->active[a];
+    aqr_complex sum = mean_around(j, j->from, a), own = wide(j->anchor[v]);
+    sum = cx(sum.x + pull * own.x, sum.y + pull * own.y);
+    j->to[v] = size(sum) > 0 ? narrow(cx_unit(sum)) : j->from[v];
+  }
+}
+
+static void store(void* data, size_t begin, size_t end)
+{
+  const job* j = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    vec3 n = v3_load(j->field->normal + 3 * v), m = v3_load(j->field->min_direction + 3 * v);
+    double angle = atan2((double)j->from[v].y, (double)j->from[v].x) / 4;
+    v3_store(j->field->cross + 3 * v, v3_unit(v3_madd(v3_scale(m, cos(angle)), sin(angle), v3_cross(n, m))));
+  }
+}
+
+/* Gives points without a direction one, ring by ring from those that have one: each ring only from
+ * what was known before it, so that the order within does not matter. Components without any anchor
+ * start from the frame of one of their points. */
+static aqr_status propagate(aqr_context* c, job* j)
+{
+  rotor* z = j->z[0];
+  size_t n = j->s->n_points, begin = 0, end = 0, seed = 0, poll = 0;
+  for (size_t v = 0; v < n; v++)
+    if (z[v].x != 0 || z[v].y != 0)
+      j->queue[end++] = (aqr_index)v;
+  while (end < n || begin < end)
+  {
+    if (begin == end)
+    {
+      while (z[seed].x != 0 || z[seed].y != 0)
+        seed++;
+      z[seed] = (rotor){ 1, 0 };
+      j->queue[end++] = (aqr_index)seed;
+    }
+    size_t next = end;
+    for (size_t i = begin; i < end; i++)
+    {
+      if (++poll % steps_between_polls == 0 && !aqr_step(c, 0))
+        return AQR_CANCELLED;
+      aqr_index v = j->queue[i];
+      for (aqr_index k = j->around->first[v]; k < j->around->first[v + 1]; k++)
+      {
+        aqr_index w = j->around->point[k];
+        if (z[w].x != 0 || z[w].y != 0 || j->to[w].x != 0)
+          continue;
+        j->to[w].x = 1; /* queued */
+        j->queue[next++] = w;
+      }
+    }
+    for (size_t i = end; i < next; i++)
+    {
+      aqr_complex mean = mean_around(j, z, j->slot[j->queue[i]]);
+      j->to[j->queue[i]] = size(mean) > 0 ? narrow(cx_unit(mean)) : (rotor){ 1, 0 };
+    }
+    for (size_t i = end; i < next; i++)
+      z[j->queue[i]] = j->to[j->queue[i]];
+    begin = end;
+    end = next;
+  }
+  return AQR_OK;
+}
+
+/* Borders and seams go counter-clockwise around the surface: each point on one has one edge ahead
+ * and one behind. */
+static void link_borders(job* j)
+{
+  const aqr_surface* s = j->s;
+  memset(j->previous, 0xff, s->n_points * sizeof *j->previous);
+  for (aqr_index v = 0; v < s->n_points; v++)
+    if (s->fan[v] != AQR_NONE && aqr_twin(s, s->fan[v]) == AQR_NONE)
+      j->previous[aqr_to(s, s->fan[v])] = v;
+}
+
+static aqr_status list_active(aqr_context* c, job* j)
+{
+  size_t n = j->s->n_points;
+  for (aqr_index v = 0; v < n; v++)
+    if (j->slot[v] != AQR_NONE)
+      j->slot[v] = (aqr_index)j->n_active++;
+  j->active = AQR_NEW(c, aqr_index, j->n_active);
+  j->first = AQR_NEW(c, aqr_index, j->n_active + 1);
+  if (!j->active || !j->first)
+    return AQR_OUT_OF_MEMORY;
+  j->first[0] = 0;
+  for (aqr_index v = 0; v < n; v++)
+    if (j->slot[v] != AQR_NONE)
+    {
+      aqr_index a = j->slot[v];
+      j->active[a] = v;
+      j->first[a + 1] = j->first[a] + j->around->first[v + 1] - j->around->first[v];
+    }
+  j->turn = AQR_NEW(c, rotor, j->first[j->n_active]);
+  return j->turn ? AQR_OK : AQR_OUT_OF_MEMORY;
+}
+
+static bool allocate(aqr_context* c, job* j)
+{
+  size_t n = j->s->n_points;
+  j->previous = AQR_NEW(c, aqr_index, n);
+  j->anchor = AQR_NEW(c, rotor, n);
+  j->z[0] = AQR_NEW(c, rotor, n);
+  j->z[1] = AQR_NEW0(c, rotor, n);
+  j->slot = AQR_NEW(c, aqr_index, n);
+  j->queue = AQR_NEW(c, aqr_index, n);
+  return j->previous && j->anchor && j->z[0] && j->z[1] && j->slot && j->queue;
+}
+
+static void release(aqr_context* c, job* j)
+{
+  size_t n = j->s->n_points;
+  if (j->turn)
+    AQR_DROP(c, j->turn, j->first[j->n_active]);
+  AQR_DROP(c, j->first, j->n_active + 1);
+  AQR_DROP(c, j->active, j->n_active);
+  AQR_DROP(c, j->previous, n);
+  AQR_DROP(c, j->anchor, n);
+  AQR_DROP(c, j->z[0], n);
+  AQR_DROP(c, j->z[1], n);
+  AQR_DROP(c, j->slot, n);
+  AQR_DROP(c, j->queue, n);
+}
+
+aqr_status aqr_cross_field(
+  aqr_context* c, const aqr_surface* s, const aqr_neighbours* around, double min_cosine, aqr_field* field)
+{
+  aqr_status status = AQR_OK;
+  job j = { .s = s, .around = around, .field = field, .min_cosine = min_cosine };
+  AQR_REQUIRE(allocate(c, &j), AQR_OUT_OF_MEMORY);
+  link_borders(&j);
+  AQR_TRY(aqr_parallel(c, s->n_points, anchors, &j, 0.6, 0.65));
+  AQR_TRY(list_active(c, &j));
+  AQR_TRY(aqr_parallel(c, j.n_active, turns, &j, 0.65, 0.7));
+  j.to = j.z[1];
+  AQR_TRY(propagate(c, &j));
+  memcpy(j.z[1], j.z[0], s->n_points * sizeof *j.z[0]);
+  j.from = j.z[0];
+  for (int i = 0; i < sweeps; i++)
+  {
+    j.from = j.z[i % 2];
+    j.to = j.z[1 - i % 2];
+    AQR_TRY(aqr_parallel(c, j.n_active, sweep, &j, 0.7 + 0.25 * i / sweeps, 0.7 + 0.25 * (i + 1) / sweeps));
+  }
+  j.from = j.z[sweeps % 2];
+  AQR_TRY(aqr_parallel(c, s->n_points, store, &j, 0.95, 1));
+done:
+  release(c, &j);
+  return status;
+}

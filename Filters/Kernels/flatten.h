@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Directions at a face's corners as complex numbers in the plane of the face (paper 2). */
+#ifndef AQR_FLATTEN_H
+#define AQR_FLATTEN_H
+
+#include "vector.h"
+
+#include <stdbool.h>
+
+typedef struct aqr_complex
+{
+  double x, y;
+} aqr_complex;
+
+static inline aqr_complex cx(double x, double y)
+{
+  return (aqr_complex){ x, y };
+}
+static inline aqr_complex cx_mul(aqr_complex a, aqr_complex b)
+{
+  return cx(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+}
+static inline aqr_complex cx_unit(aqr_complex a)
+{
+  double n = sqrt(a.x * a.x + a.y * a.y);
+  return n > 0 ? cx(a.x / n, a.y / n) : cx(1, 0);
+}
+
+/* A tangent direction at a corner with normal n as a unit complex number in a plane where the edges
+ * leaving the corner lie along to_next and to_prev: measured from the edge nearer to the tangent
+ * plane. */
+static inline aqr_complex aqr_flatten(
+  vec3 n, vec3 direction, vec3 next, vec3 prev, aqr_complex to_next, aqr_complex to_prev)
+{
+  double a = v3_dot(next, n), b = v3_dot(prev, n);
+  bool use_next = a * a * v3_norm2(prev) <= b * b * v3_norm2(next);
+  vec3 p = v3_reject(use_next ? next : prev, n);
+  aqr_complex xi = cx(v3_dot(p, direction), v3_dot(n, v3_cross(p, direction)));
+  return cx_unit(cx_mul(use_next ? to_next : to_prev, xi));
+}
+
+#endif
