@@ -146,14 +146,14 @@ static bool between_odd_faces(const aqr_polygon_mesh* m, aqr_index h)
 
 /* Lines that end from both sides on nearby places of a third make two pentagons; where they meet there is a crossing
  * and all faces are quads. Short sides of triangles go likewise. */
-static bool weld_joints(aqr_context* c, aqr_polygon_mesh* m, bool* changed)
+static bool weld_joints(aqr_context* c, aqr_polygon_mesh* m)
 {
   for (aqr_index h = 0; h < m->n_half_edges; h += 2)
   {
     if (h % 65536 == 0 && !aqr_step(c, 0.4))
       return false;
     if (aqr_pm_edge_lives(m, h) && between_odd_faces(m, h) && edge_length(m, h) < weld_reach * local_size(m, h))
-      *changed |= contract_if(m, h, least_gain);
+      contract_if(m, h, least_gain);
   }
   return true;
 }
@@ -191,7 +191,7 @@ static bool keeps_fan(const aqr_polygon_mesh* m, const aqr_polygon* g, unsigned 
 }
 
 /* Cuts the union of the two faces beside h anew where that is better. */
-static aqr_status redraw(aqr_context* c, aqr_polygon_mesh* m, aqr_index h, unsigned largest, bool* changed)
+static aqr_status redraw(aqr_context* c, aqr_polygon_mesh* m, aqr_index h, unsigned largest)
 {
   aqr_index f = aqr_pm_face(m, h), other = aqr_pm_face(m, h ^ 1), corner[AQR_POLYGON_CORNERS];
   aqr_polygon g = { .n = 0 };
@@ -206,11 +206,10 @@ static aqr_status redraw(aqr_context* c, aqr_polygon_mesh* m, aqr_index h, unsig
   aqr_partition p = aqr_best_partition(m, &g, largest, h);
   if (!(p.cost < before - least_gain) || !keeps_fan(m, &g, 0, &p) || !keeps_fan(m, &g, (unsigned)n_f - 1, &p))
     return AQR_OK;
-  *changed = true;
   return aqr_pm_remove_edge(m, h) ? draw(c, m, corner, &p) : AQR_INTERNAL;
 }
 
-static aqr_status redraw_all(aqr_context* c, aqr_polygon_mesh* m, unsigned largest, bool* changed)
+static aqr_status redraw_all(aqr_context* c, aqr_polygon_mesh* m, unsigned largest)
 {
   aqr_status status = AQR_OK;
   size_t n = m->n_half_edges;
@@ -219,7 +218,7 @@ static aqr_status redraw_all(aqr_context* c, aqr_polygon_mesh* m, unsigned large
     if (h % 65536 == 0)
       AQR_REQUIRE(aqr_step(c, 0.6), AQR_CANCELLED);
     if (aqr_pm_edge_lives(m, h) && !aqr_pm_on_chain(m, h) && between_odd_faces(m, h))
-      AQR_TRY(redraw(c, m, h, largest, changed));
+      AQR_TRY(redraw(c, m, h, largest));
   }
 done:
   return status;
@@ -318,15 +317,12 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   AQR_REQUIRE(aqr_tidy(c, m), AQR_CANCELLED);
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(merge_near_intersections(c, m), AQR_CANCELLED);
-  for (unsigned round = 0; round < rounds; round++)
+  for (unsigned round = 1; round <= rounds; round++) /* near partners first, then farther ones */
   {
-    bool changed = false;
-    AQR_REQUIRE(weld_joints(c, m, &changed), AQR_CANCELLED);
-    AQR_TRY(aqr_joints_extend(c, m, round + 1, &changed));
-    AQR_TRY(redraw_all(c, m, largest, &changed));
+    AQR_REQUIRE(weld_joints(c, m), AQR_CANCELLED);
+    AQR_TRY(aqr_joints_extend(c, m, round));
+    AQR_TRY(redraw_all(c, m, largest));
     AQR_TRY(partition_all(c, m, options));
-    if (!changed)
-      break;
   }
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(aqr_pm_is_consistent(m) && aqr_pm_is_regular(m), AQR_INTERNAL);

@@ -198,7 +198,7 @@ static aqr_index joint_of(const aqr_polygon_mesh* m, aqr_index h)
   return best;
 }
 
-aqr_status aqr_joints_extend(aqr_context* c, aqr_polygon_mesh* m, unsigned reach, bool* changed)
+aqr_status aqr_joints_extend(aqr_context* c, aqr_polygon_mesh* m, unsigned reach)
 {
   aqr_status status = AQR_OK;
   size_t n = m->n_faces;
@@ -212,7 +212,6 @@ aqr_status aqr_joints_extend(aqr_context* c, aqr_polygon_mesh* m, unsigned reach
     if (p.n == 0)
       continue;
     AQR_TRY(extend(c, m, &p));
-    *changed = true;
   }
 done:
   return status;

@@ -8,6 +8,6 @@
 
 /* Prolongs lines from T-joints through at most `reach` faces where that leaves fewer faces that are not quads. A
  * regular mesh stays regular but for equal faces. */
-aqr_status aqr_joints_extend(aqr_context* c, aqr_polygon_mesh* m, unsigned reach, bool* changed);
+aqr_status aqr_joints_extend(aqr_context* c, aqr_polygon_mesh* m, unsigned reach);
 
 #endif

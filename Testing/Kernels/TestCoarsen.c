@@ -8,8 +8,9 @@
 static aqr_status coarsen_grid(aqr_context* c, size_t nu, size_t nv, bool closed, aqr_vertex (*place)(double, double),
   size_t points, aqr_polygon_mesh* m)
 {
+  aqr_context plain = { 0 };
   aqr_surface s;
-  if (!surface_of_grid(c, nu, nv, closed, place, &s))
+  if (!surface_of_grid(&plain, nu, nv, closed, place, &s))
     return AQR_INTERNAL;
   aqr_index* faces = malloc(s.n_faces * sizeof *faces);
   aqr_field field = { .normal = malloc(3 * s.n_points * sizeof(double)) };
@@ -79,6 +80,23 @@ AQR_TEST(a_small_component_passes_as_it_is_and_leaves_the_mesh_before_it_alone)
   CHECK(aqr_pm_face_size(&m, 53) == 4 && aqr_pm_face_size(&m, 54) == 3);
   aqr_polygon_mesh_free(&c, &m);
   CHECK(c.bytes == 0);
+}
+
+AQR_TEST(coarsening_that_runs_out_of_memory_leaves_nothing_behind)
+{
+  unsigned failed = 0;
+  for (size_t allowed = 0; allowed < 60; allowed++)
+  {
+    ration r = { allowed };
+    aqr_context c = { .hooks = { .user = &r, .reallocate = rationed } };
+    aqr_polygon_mesh m = { 0 };
+    aqr_status status = coarsen_grid(&c, 9, 6, true, on_torus, 20, &m);
+    failed += status != AQR_OK;
+    CHECK(status != AQR_OK || aqr_pm_is_regular(&m));
+    aqr_polygon_mesh_free(&c, &m);
+    CHECK(c.bytes == 0);
+  }
+  CHECK(failed > 5 && failed < 60);
 }
 
 AQR_TEST_MAIN

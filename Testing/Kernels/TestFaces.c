@@ -3,6 +3,7 @@
 
 #include "cells.h"
 #include "faces.h"
+#include "regularize.h"
 
 static const aqr_faces_options usual = { .convex_partition = true, .largest_valence = 5 };
 
@@ -102,6 +103,48 @@ AQR_TEST(a_crease_stays_closed_and_on_its_curve)
   }
 }
 
+/* Removes the grid lines' edges between two points of the unit sheet with n cells a side. */
+static void erase(aqr_polygon_mesh* m, vec3 from, vec3 to)
+{
+  for (aqr_index h = 0; h < m->n_half_edges; h += 2)
+  {
+    if (!aqr_pm_edge_lives(m, h))
+      continue;
+    vec3 p = v3_scale(v3_add(aqr_pm_point(m, aqr_pm_from(m, h)), aqr_pm_point(m, aqr_pm_to(m, h))), 0.5);
+    vec3 d = v3_sub(to, from), e = v3_sub(p, from);
+    double t = v3_dot(d, e) / v3_norm2(d);
+    if (t > 0 && t < 1 && v3_norm(v3_madd(e, -t, d)) < 1e-6)
+      aqr_pm_remove_edge(m, h);
+  }
+}
+
+/* A line with a gap of two cells: between its two ends it goes on. */
+AQR_TEST(lines_that_end_towards_each_other_are_joined)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(sheet_of_quads(&c, 10, 10, &m));
+  erase(&m, v3(0.4, 0.5, 0), v3(0.7, 0.5, 0));
+  CHECK(count_quads(&m) == 94);
+  CHECK(aqr_tidy(&c, &m));
+  CHECK(count_quads(&m) == 95);
+  CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+  CHECK(count_quads(&m) == 100 && m.n_faces == 100 && m.n_vertices == 121);
+  aqr_polygon_mesh_free(&c, &m);
+}
+
+/* A line that ends one cell before the border goes on to it. */
+AQR_TEST(a_line_that_ends_short_of_the_border_reaches_it)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(sheet_of_quads(&c, 10, 10, &m));
+  erase(&m, v3(0.9, 0.5, 0), v3(1, 0.5, 0));
+  CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+  CHECK(count_quads(&m) == 100 && m.n_faces == 100 && m.n_vertices == 121);
+  aqr_polygon_mesh_free(&c, &m);
+}
+
 /* Two lines that end on a third from both sides, a tenth of a cell apart. */
 AQR_TEST(t_joints_that_face_each_other_become_one_crossing)
 {
@@ -150,23 +193,6 @@ AQR_TEST(no_face_has_more_corners_than_asked_for)
       CHECK((int)aqr_pm_face_size(&m, f) <= largest);
     aqr_polygon_mesh_free(&c, &m);
   }
-}
-
-typedef struct ration
-{
-  size_t left;
-} ration;
-
-static void* rationed(void* user, void* old, size_t old_bytes, size_t bytes)
-{
-  ration* r = user;
-  (void)old_bytes;
-  if (bytes == 0)
-  {
-    free(old);
-    return NULL;
-  }
-  return r->left && r->left-- ? realloc(old, bytes) : NULL;
 }
 
 AQR_TEST(running_out_of_memory_leaves_nothing_behind)

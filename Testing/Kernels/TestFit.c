@@ -235,4 +235,48 @@ AQR_TEST(a_border_with_a_single_vertex_opens_to_a_triangle)
   CHECK(c.bytes == 0);
 }
 
+AQR_TEST(a_fit_that_runs_out_of_memory_says_so)
+{
+  unsigned failed = 0;
+  aqr_context plain = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&plain, 20, 10, true, on_torus, &s));
+  for (size_t allowed = 0; allowed < 14; allowed++)
+  {
+    ration r = { SIZE_MAX };
+    aqr_context c = { .hooks = { .user = &r, .reallocate = rationed } };
+    aqr_polygon_mesh m = { 0 };
+    CHECK(grid_of_quads(&c, 8, 5, true, on_torus, &m));
+    r.left = allowed;
+    aqr_status status = aqr_fit(&c, &s, &m);
+    CHECK(status == AQR_OK || status == AQR_OUT_OF_MEMORY);
+    failed += status != AQR_OK;
+    aqr_polygon_mesh_free(&c, &m);
+    CHECK(c.bytes == 0);
+  }
+  CHECK(failed > 5 && failed < 14);
+  free_surface(&s);
+}
+
+static int never(void* user, double fraction, const char* stage)
+{
+  (void)user;
+  (void)fraction;
+  (void)stage;
+  return 0;
+}
+
+AQR_TEST(a_fit_can_be_cancelled)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 20, 10, true, on_torus, &s) && grid_of_quads(&c, 8, 5, true, on_torus, &m));
+  c.hooks.progress = never;
+  CHECK(aqr_fit(&c, &s, &m) == AQR_CANCELLED);
+  aqr_polygon_mesh_free(&c, &m);
+  free_surface(&s);
+  CHECK(c.bytes == 0);
+}
+
 AQR_TEST_MAIN

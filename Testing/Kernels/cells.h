@@ -8,6 +8,24 @@
 
 #include <stdlib.h>
 
+/* An allocator that fails after some number of calls. */
+typedef struct ration
+{
+  size_t left;
+} ration;
+
+static inline void* rationed(void* user, void* old, size_t old_bytes, size_t bytes)
+{
+  ration* r = user;
+  (void)old_bytes;
+  if (bytes == 0)
+  {
+    free(old);
+    return NULL;
+  }
+  return r->left && r->left-- ? realloc(old, bytes) : NULL;
+}
+
 static inline unsigned next_random(unsigned* state)
 {
   *state = *state * 1664525u + 1013904223u;
