@@ -13,7 +13,8 @@ enum
   most_borrowings = 64, /* rounds in which needles look through each other */
   patch_rings = 3,
   patch_faces = 48, /* around one edge on one side */
-  most_prunings = 64
+  most_prunings = 64,
+  most_rounds = 16
 };
 
 static const double rounding = 6e-8; /* of coordinates that were single precision once, relative */
@@ -38,8 +39,9 @@ typedef struct detector
   aqr_context* c;
   const aqr_surface* s;
   double angle, min_length;
-  double* normal;   /* per face; zero where unknown */
-  float* deviation; /* per half-edge */
+  double* normal;     /* per face; zero where unknown */
+  float* deviation;   /* per half-edge */
+  uint8_t* is_crease; /* per half-edge: not given up yet */
   crease_edge* edges;
   size_t n_edges, capacity;
   size_t* first; /* per point, into `incident` */
@@ -124,22 +126,23 @@ done:
   return status;
 }
 
+/* An edge is measured by its smaller half-edge, for both. */
 static void find_deviations(void* data, size_t begin, size_t end)
 {
   detector* d = data;
   const aqr_surface* s = d->s;
-  for (size_t h = begin; h < end; h++)
+  for (size_t i = begin; i < end; i++)
   {
-    aqr_index t = s->twin[h];
-    d->deviation[h] = 0;
-    if (t == AQR_NONE || !has_normal(d, (aqr_index)h / 3) || !has_normal(d, t / 3))
+    aqr_index h = (aqr_index)i, t = s->twin[h];
+    if (t == AQR_NONE)
+      d->deviation[h] = 0;
+    if (t == AQR_NONE || t < h)
       continue;
-    /* from the smaller half-edge, so that both sides get the same bits */
-    aqr_index a = t < h ? t : (aqr_index)h, b = t < h ? (aqr_index)h : t;
-    vec3 n = v3_load(d->normal + 3 * (size_t)(a / 3)), m = v3_load(d->normal + 3 * (size_t)(b / 3));
-    vec3 x = v3_cross(n, m), e = v3_sub(aqr_point(s, aqr_to(s, a)), aqr_point(s, aqr_from(s, a)));
-    double size = atan2(v3_norm(x), v3_dot(n, m));
-    d->deviation[h] = (float)(v3_dot(x, e) < 0 ? -size : size);
+    vec3 n = v3_load(d->normal + 3 * (size_t)(h / 3)), m = v3_load(d->normal + 3 * (size_t)(t / 3));
+    vec3 x = v3_cross(n, m), e = v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h)));
+    bool known = v3_norm2(n) > 0 && v3_norm2(m) > 0;
+    double size = known ? atan2(v3_norm(x), v3_dot(n, m)) : 0;
+    d->deviation[h] = d->deviation[t] = (float)(v3_dot(x, e) < 0 ? -size : size);
   }
 }
 
@@ -161,19 +164,21 @@ static aqr_status list_candidates(detector* d)
       continue;
     if (!AQR_RESERVE(d->c, d->edges, d->capacity, d->n_edges + 1))
       return AQR_OUT_OF_MEMORY;
+    d->is_crease[h] = d->is_crease[s->twin[h]] = 1;
     d->edges[d->n_edges++] =
       (crease_edge){ .h = h, .end = { aqr_from(s, h), aqr_to(s, h) }, .deviation = d->deviation[h] };
   }
   return AQR_OK;
 }
 
-/* Adds length times deviation, and length, over the edges inside the patch that is reached from the face of h without
- * crossing a candidate. */
-static void measure_patch(const detector* d, aqr_index h, double* bend, double* length)
+/* Mean deviation, by length, of the edges inside the patch that is reached from the face of h without crossing a
+ * candidate. A face that candidates enclose says nothing of smoothness; as good as bent by a right angle. */
+static double patch_bend(const detector* d, aqr_index h)
 {
   const aqr_surface* s = d->s;
   aqr_index face[patch_faces];
   unsigned ring[patch_faces], n = 1;
+  double bend = 0, length = 0;
   face[0] = h / 3;
   ring[0] = 0;
   for (unsigned i = 0; i < n; i++)
@@ -187,15 +192,16 @@ static void measure_patch(const detector* d, aqr_index h, double* bend, double* 
         j++;
       if (j == n)
       {
-        if (n == patch_faces || ring[i] == patch_rings || size_at(d, g) > weak * d->angle)
+        if (n == patch_faces || ring[i] == patch_rings || d->is_crease[g])
           continue;
         face[n] = t / 3;
         ring[n++] = ring[i] + 1;
       }
       double l = edge_length(s, g);
-      *bend += l * size_at(d, g);
-      *length += l;
+      bend += l * size_at(d, g);
+      length += l;
     }
+  return length > 0 ? bend / length : pi / 2;
 }
 
 /* At a crease the surface on either side is smooth compared with it; in the noise of a scan it is not. */
@@ -205,10 +211,10 @@ static void find_roughness(void* data, size_t begin, size_t end)
   for (size_t i = begin; i < end; i++)
   {
     crease_edge* e = &d->edges[i];
-    double bend = 0, length = 0;
-    measure_patch(d, e->h, &bend, &length);
-    measure_patch(d, d->s->twin[e->h], &bend, &length);
-    e->roughness = (float)(length > 0 ? bend / length / fabs((double)e->deviation) : 0);
+    if (!d->is_crease[e->h])
+      continue;
+    double bend = patch_bend(d, e->h) + patch_bend(d, d->s->twin[e->h]);
+    e->roughness = (float)(bend / 2 / fabs((double)e->deviation));
   }
 }
 
@@ -246,11 +252,12 @@ static aqr_status grow(detector* d)
   if (!queue)
     return AQR_OUT_OF_MEMORY;
   for (size_t i = 0; i < n; i++)
-    if (fabs((double)d->edges[i].deviation) > d->angle && (double)d->edges[i].roughness < roughest)
-    {
-      d->edges[i].kept = true;
+  {
+    crease_edge* e = &d->edges[i];
+    e->kept = d->is_crease[e->h] && fabs((double)e->deviation) > d->angle && (double)e->roughness < roughest;
+    if (e->kept)
       queue[tail++] = (aqr_index)i;
-    }
+  }
   for (size_t head = 0; head < tail; head++)
   {
     const crease_edge* e = &d->edges[queue[head]];
@@ -260,8 +267,8 @@ static aqr_status grow(detector* d)
       for (size_t j = d->first[e->end[k]]; j < d->first[e->end[k] + 1]; j++)
       {
         crease_edge* g = &d->edges[d->incident[j]];
-        if (g->kept || (g->deviation > 0) != (e->deviation > 0) || (double)g->roughness >= roughest ||
-            -v3_dot(back, away(d, g, e->end[k])) < straight)
+        if (g->kept || !d->is_crease[g->h] || (g->deviation > 0) != (e->deviation > 0) ||
+            (double)g->roughness >= roughest || -v3_dot(back, away(d, g, e->end[k])) < straight)
           continue;
         g->kept = true;
         queue[tail++] = d->incident[j];
@@ -425,9 +432,11 @@ static aqr_status prune(detector* d)
     {
       run* a = &r.list[i];
       bool loose = a->free[0] || a->free[1];
+      /* what hangs together in short pieces must be cleaner */
+      double allowed = rough * fmin(1, 0.25 + 0.75 * a->length / d->min_length);
       a->dropped = (a->closed && a->length < d->min_length) ||
                    (loose && a->length < d->min_length && goes_first(shortest, a)) || wobble(d, &r, a) > zigzag ||
-                   a->roughness > rough;
+                   a->roughness > allowed;
     }
     for (size_t i = 0; i < r.n; i++)
       for (size_t j = 0; r.list[i].dropped && j < r.list[i].count; j++)
@@ -490,10 +499,23 @@ done:
   return status;
 }
 
+/* Forgets the candidates that were not kept; returns how many were. */
+static size_t give_up(detector* d)
+{
+  size_t left = 0;
+  for (size_t i = 0; i < d->n_edges; i++)
+  {
+    const crease_edge* e = &d->edges[i];
+    d->is_crease[e->h] = d->is_crease[d->s->twin[e->h]] = e->kept;
+    left += e->kept;
+  }
+  return left;
+}
+
 aqr_status aqr_features_detect(
   aqr_context* c, const aqr_surface* s, double angle, double min_length, uint8_t* is_crease, aqr_report* report)
 {
-  detector d = { .c = c, .s = s, .angle = angle * pi / 180, .min_length = min_length };
+  detector d = { .c = c, .s = s, .angle = angle * pi / 180, .min_length = min_length, .is_crease = is_crease };
   aqr_status status = AQR_OK;
   memset(is_crease, 0, 3 * s->n_faces);
   d.normal = AQR_NEW(c, double, 3 * s->n_faces);
@@ -503,18 +525,19 @@ aqr_status aqr_features_detect(
   AQR_TRY(borrow_normals(&d));
   AQR_TRY(aqr_parallel(c, 3 * s->n_faces, find_deviations, &d, 0.1, 0.4));
   AQR_TRY(list_candidates(&d));
-  AQR_TRY(aqr_parallel(c, d.n_edges, find_roughness, &d, 0.4, 0.7));
   AQR_TRY(link_candidates(&d));
-  AQR_TRY(grow(&d));
-  AQR_TRY(prune(&d));
-  AQR_TRY(drop_clusters(&d));
-  report->feature_edges = 0;
-  for (size_t i = 0; i < d.n_edges; i++)
-    if (d.edges[i].kept)
-    {
-      is_crease[d.edges[i].h] = is_crease[s->twin[d.edges[i].h]] = 1;
-      report->feature_edges++;
-    }
+  /* what is given up counts as roughness beside what is left */
+  size_t left = d.n_edges, before = left + 1;
+  for (unsigned round = 0; round < most_rounds && left < before; round++)
+  {
+    AQR_TRY(aqr_parallel(c, d.n_edges, find_roughness, &d, 0.4, 0.7));
+    AQR_TRY(grow(&d));
+    AQR_TRY(prune(&d));
+    AQR_TRY(drop_clusters(&d));
+    before = left;
+    left = give_up(&d);
+  }
+  report->feature_edges = left;
 done:
   AQR_DROP(c, d.normal, 3 * s->n_faces);
   AQR_DROP(c, d.deviation, 3 * s->n_faces);
