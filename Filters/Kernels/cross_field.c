@@ -23,11 +23,6 @@ static const double full_anisotropy = 0.5;
 static const double border_weight = 0.4;
 static const double seam_agreement = 0.866; /* of two edges up to 15 degrees apart: cos(4 * 15 / 2) */
 
-typedef struct rotor
-{
-  float x, y;
-} rotor;
-
 typedef struct job
 {
   const aqr_surface* s;
@@ -35,26 +30,18 @@ typedef struct job
   aqr_field* field;
   double min_cosine;
   aqr_index* previous; /* per point: the point before it along its border or seam, or AQR_NONE */
-  rotor* anchor;       /* per point: weight times direction */
-  rotor* z[2];         /* per point; 0 where not yet known */
+  aqr_rotor* anchor;   /* per point: weight times direction */
+  aqr_rotor* z[2];     /* per point; 0 where not yet known */
   aqr_index* slot;     /* per point: where it is in `active`, or AQR_NONE */
   aqr_index* active;   /* points that are not firmly anchored, ascending */
   size_t n_active;
   aqr_index* first; /* n_active + 1: where each one's begin in `turn` */
-  rotor* turn;      /* brings a neighbour's z into the point's frame */
+  aqr_rotor* turn;  /* brings a neighbour's z into the point's frame */
   aqr_index* queue;
-  const rotor* from;
-  rotor* to;
+  const aqr_rotor* from;
+  aqr_rotor* to;
 } job;
 
-static rotor narrow(aqr_complex a)
-{
-  return (rotor){ (float)a.x, (float)a.y };
-}
-static aqr_complex wide(rotor a)
-{
-  return cx((double)a.x, (double)a.y);
-}
 static double size(aqr_complex a)
 {
   return sqrt(a.x * a.x + a.y * a.y);
@@ -153,9 +140,9 @@ static void anchors(void* data, size_t begin, size_t end)
         a = cx(a.x + (1 - w) * (1 - w) * b.x, a.y + (1 - w) * (1 - w) * b.y);
       }
     }
-    j->anchor[v] = narrow(a);
+    j->anchor[v] = cx_narrow(a);
     double r = size(a);
-    j->z[0][v] = r >= own_start ? narrow(cx(a.x / r, a.y / r)) : (rotor){ 0, 0 };
+    j->z[0][v] = r >= own_start ? cx_narrow(cx(a.x / r, a.y / r)) : (aqr_rotor){ 0, 0 };
     j->slot[v] = r < firm ? 0 : AQR_NONE;
   }
 }
@@ -177,18 +164,18 @@ static void turns(void* data, size_t begin, size_t end)
       double both = 1 + v3_dot(n, m);
       if (both > 0)
         d = v3_madd(d, -v3_dot(d, n) / both, v3_add(n, m));
-      j->turn[i] = narrow(in_frame(f, v, d));
+      j->turn[i] = cx_narrow(in_frame(f, v, d));
     }
   }
 }
 
-static aqr_complex mean_around(const job* j, const rotor* z, size_t a)
+static aqr_complex mean_around(const job* j, const aqr_rotor* z, size_t a)
 {
   const aqr_index* point = j->around->point + j->around->first[j->active[a]];
   float x = 0, y = 0;
   for (aqr_index i = j->first[a]; i < j->first[a + 1]; i++)
   {
-    rotor t = j->turn[i], b = z[point[i - j->first[a]]];
+    aqr_rotor t = j->turn[i], b = z[point[i - j->first[a]]];
     x += t.x * b.x - t.y * b.y;
     y += t.x * b.y + t.y * b.x;
   }
@@ -202,9 +189,9 @@ static void sweep(void* data, size_t begin, size_t end)
   for (size_t a = begin; a < end; a++)
   {
     size_t v = j->active[a];
-    aqr_complex sum = mean_around(j, j->from, a), own = wide(j->anchor[v]);
+    aqr_complex sum = mean_around(j, j->from, a), own = cx_wide(j->anchor[v]);
     sum = cx(sum.x + pull * own.x, sum.y + pull * own.y);
-    j->to[v] = size(sum) > 0 ? narrow(cx_unit(sum)) : j->from[v];
+    j->to[v] = size(sum) > 0 ? cx_narrow(cx_unit(sum)) : j->from[v];
   }
 }
 
@@ -224,7 +211,7 @@ static void store(void* data, size_t begin, size_t end)
  * start from the frame of one of their points. */
 static aqr_status propagate(aqr_context* c, job* j)
 {
-  rotor* z = j->z[0];
+  aqr_rotor* z = j->z[0];
   size_t n = j->s->n_points, begin = 0, end = 0, seed = 0, poll = 0;
   for (size_t v = 0; v < n; v++)
     if (z[v].x != 0 || z[v].y != 0)
@@ -235,7 +222,7 @@ static aqr_status propagate(aqr_context* c, job* j)
     {
       while (z[seed].x != 0 || z[seed].y != 0)
         seed++;
-      z[seed] = (rotor){ 1, 0 };
+      z[seed] = (aqr_rotor){ 1, 0 };
       j->queue[end++] = (aqr_index)seed;
     }
     size_t next = end;
@@ -256,7 +243,7 @@ static aqr_status propagate(aqr_context* c, job* j)
     for (size_t i = end; i < next; i++)
     {
       aqr_complex mean = mean_around(j, z, j->slot[j->queue[i]]);
-      j->to[j->queue[i]] = size(mean) > 0 ? narrow(cx_unit(mean)) : (rotor){ 1, 0 };
+      j->to[j->queue[i]] = size(mean) > 0 ? cx_narrow(cx_unit(mean)) : (aqr_rotor){ 1, 0 };
     }
     for (size_t i = end; i < next; i++)
       z[j->queue[i]] = j->to[j->queue[i]];
@@ -295,7 +282,7 @@ static aqr_status list_active(aqr_context* c, job* j)
       j->active[a] = v;
       j->first[a + 1] = j->first[a] + j->around->first[v + 1] - j->around->first[v];
     }
-  j->turn = AQR_NEW(c, rotor, j->first[j->n_active]);
+  j->turn = AQR_NEW(c, aqr_rotor, j->first[j->n_active]);
   return j->turn ? AQR_OK : AQR_OUT_OF_MEMORY;
 }
 
@@ -303,9 +290,9 @@ static bool allocate(aqr_context* c, job* j)
 {
   size_t n = j->s->n_points;
   j->previous = AQR_NEW(c, aqr_index, n);
-  j->anchor = AQR_NEW(c, rotor, n);
-  j->z[0] = AQR_NEW(c, rotor, n);
-  j->z[1] = AQR_NEW0(c, rotor, n);
+  j->anchor = AQR_NEW(c, aqr_rotor, n);
+  j->z[0] = AQR_NEW(c, aqr_rotor, n);
+  j->z[1] = AQR_NEW0(c, aqr_rotor, n);
   j->slot = AQR_NEW(c, aqr_index, n);
   j->queue = AQR_NEW(c, aqr_index, n);
   return j->previous && j->anchor && j->z[0] && j->z[1] && j->slot && j->queue;

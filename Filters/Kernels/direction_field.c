@@ -5,8 +5,6 @@
 #include "cross_field.h"
 #include "flatten.h"
 
-#include <string.h>
-
 /* Curvature differences below this are rounding, no direction: the scaled surface would turn by less
  * than this many radians from end to end. */
 static const double least_difference = 1e-7;
@@ -17,13 +15,29 @@ typedef struct job
   const aqr_neighbours* around;
   const double* t;
   double* smoothed;
+  aqr_rotor* direction; /* per point: the minimum direction in the point's frame; 0 where there is none */
+  aqr_rotor* corner;    /* per half-edge: turns the frame at its start into its face's plane; 0 without a plane */
   aqr_field* field;
 } job;
 
-static vec3 any_tangent(vec3 n)
+typedef struct frame
 {
-  return v3_unit(v3_cross(n, fabs(n.x) < 0.8 ? v3(1, 0, 0) : v3(0, 1, 0)));
+  vec3 x, y;
+} frame;
+
+/* The same in every iteration, as the normals are. */
+static frame frame_at(const aqr_field* field, size_t v)
+{
+  vec3 n = v3_load(field->normal + 3 * v);
+  vec3 x = v3_unit(v3_cross(n, fabs(n.x) < 0.8 ? v3(1, 0, 0) : v3(0, 1, 0)));
+  return (frame){ x, v3_cross(n, x) };
 }
+
+typedef struct principal
+{
+  double k_min, k_max;
+  aqr_complex min_direction; /* in the frame; 0 where there is none */
+} principal;
 
 static double apply(const double* t, vec3 a, vec3 b)
 {
@@ -31,60 +45,64 @@ static double apply(const double* t, vec3 a, vec3 b)
          t[4] * (a.x * b.z + a.z * b.x) + t[5] * (a.y * b.z + a.z * b.y);
 }
 
-/* Principal curvatures and directions from the tensor in the plane of the averaged normal. Its
- * eigenvectors are swapped (DESIGN: normal cycles): the larger curvature comes along the minimum
- * direction. The direction is zero where there is none. */
-static void principal(void* data, size_t begin, size_t end)
+/* Of the tensor in the plane of the averaged normal. Its eigenvectors are swapped, as normal cycles
+ * have them: the larger curvature comes along the minimum direction. */
+static principal principal_of(const double* t, frame at)
+{
+  double a = apply(t, at.x, at.x), b = apply(t, at.y, at.y), off = apply(t, at.x, at.y);
+  double mean = (a + b) / 2, d = (a - b) / 2, half = sqrt(d * d + off * off);
+  principal p = { mean - half, mean + half, cx(0, 0) };
+  if (2 * half > least_difference * (1 + fabs(mean)))
+    p.min_direction = cx_unit(d >= 0 ? cx(half + d, off) : cx(fabs(off), copysign(half - d, off)));
+  return p;
+}
+
+static void find_directions(void* data, size_t begin, size_t end)
 {
   const job* j = data;
   for (size_t v = begin; v < end; v++)
-  {
-    vec3 n = v3_load(j->field->normal + 3 * v), e1 = any_tangent(n), e2 = v3_cross(n, e1);
-    const double* t = j->t + 6 * v;
-    double a = apply(t, e1, e1), b = apply(t, e2, e2), off = apply(t, e1, e2);
-    double mean = (a + b) / 2, d = (a - b) / 2, half = sqrt(d * d + off * off);
-    double x = d >= 0 ? half + d : fabs(off), y = d >= 0 ? off : copysign(half - d, off);
-    double r = sqrt(x * x + y * y);
-    j->field->k_min[v] = mean - half;
-    j->field->k_max[v] = mean + half;
-    bool directed = 2 * half > least_difference * (1 + fabs(mean));
-    v3_store(j->field->min_direction + 3 * v, directed ? v3_madd(v3_scale(e1, x / r), y / r, e2) : v3(0, 0, 0));
-  }
+    j->direction[v] = cx_narrow(principal_of(j->t + 6 * v, frame_at(j->field, v)).min_direction);
 }
 
-/* Equation 1. Nothing is known of faces with a corner without direction, or without a plane. */
-static double face_confidence(const aqr_surface* s, const aqr_field* field, size_t f)
+static void turn_corners(void* data, size_t begin, size_t end)
 {
-  vec3 p[3], e[3];
-  for (unsigned i = 0; i < 3; i++)
-    p[i] = aqr_point(s, s->corner[3 * f + i]);
-  for (unsigned i = 0; i < 3; i++)
-    e[i] = v3_sub(p[(i + 1) % 3], p[i]);
-  double base = v3_norm(e[0]), cross = v3_norm(v3_cross(e[0], e[1])), along = v3_dot(e[1], e[0]);
-  if (!(base > 0 && cross > 0))
-    return 0;
-  aqr_complex q[3] = { cx(base, 0), cx(along / base, cross / base), cx(-base - along / base, -cross / base) };
-  aqr_complex d[3];
-  for (unsigned i = 0; i < 3; i++)
+  const job* j = data;
+  for (size_t f = begin; f < end; f++)
   {
-    size_t v = s->corner[3 * f + i];
-    unsigned k = (i + 2) % 3;
-    vec3 direction = v3_load(field->min_direction + 3 * v);
-    if (v3_norm2(direction) < 0.5)
-      return 0;
-    d[i] = aqr_flatten(v3_load(field->normal + 3 * v), direction, e[i], v3_scale(e[k], -1), q[i], cx(-q[k].x, -q[k].y));
+    vec3 p[3], e[3];
+    for (unsigned i = 0; i < 3; i++)
+      p[i] = aqr_point(j->s, j->s->corner[3 * f + i]);
+    for (unsigned i = 0; i < 3; i++)
+      e[i] = v3_sub(p[(i + 1) % 3], p[i]);
+    double base = v3_norm(e[0]), cross = v3_norm(v3_cross(e[0], e[1])), along = v3_dot(e[1], e[0]);
+    bool flat = base > 0 && cross > 0;
+    double x = flat ? along / base : 0, y = flat ? cross / base : 0;
+    aqr_complex q[3] = { cx(base, 0), cx(x, y), cx(-base - x, -y) };
+    for (unsigned i = 0; i < 3; i++)
+    {
+      size_t v = j->s->corner[3 * f + i];
+      unsigned k = (i + 2) % 3;
+      aqr_complex turn = aqr_flatten(v3_load(j->field->normal + 3 * v), frame_at(j->field, v).x, e[i],
+        v3_scale(e[k], -1), q[i], cx(-q[k].x, -q[k].y));
+      j->corner[3 * f + i] = flat ? cx_narrow(turn) : (aqr_rotor){ 0, 0 };
+    }
   }
-  double least = 1;
-  for (unsigned i = 0; i < 3; i++)
-    least = fmin(least, fabs(d[i].x * d[(i + 1) % 3].x + d[i].y * d[(i + 1) % 3].y));
-  return least;
 }
 
+/* Equation 1; 0 where a corner has no direction. */
 static void faces_confidence(void* data, size_t begin, size_t end)
 {
   const job* j = data;
   for (size_t f = begin; f < end; f++)
-    j->field->face_confidence[f] = (float)face_confidence(j->s, j->field, f);
+  {
+    aqr_complex d[3];
+    for (unsigned i = 0; i < 3; i++)
+      d[i] = cx_mul(cx_wide(j->corner[3 * f + i]), cx_wide(j->direction[j->s->corner[3 * f + i]]));
+    double a = fabs(d[0].x * d[1].x + d[0].y * d[1].y), b = fabs(d[1].x * d[2].x + d[1].y * d[2].y),
+           c = fabs(d[2].x * d[0].x + d[2].y * d[0].y), least = a < b ? a : b;
+    least = least < c ? least : c;
+    j->field->face_confidence[f] = least < 1 ? (float)least : 1;
+  }
 }
 
 static void points_confidence(void* data, size_t begin, size_t end)
@@ -129,22 +147,26 @@ static void smooth(void* data, size_t begin, size_t end)
   }
 }
 
-/* Any unit tangent where there is no principal direction, along an edge where possible: what is
- * built on the field needs a frame everywhere. */
-static void complete(void* data, size_t begin, size_t end)
+/* The final frames. Where there is no principal direction an edge takes its place: what is built on
+ * the field needs a frame everywhere. */
+static void store(void* data, size_t begin, size_t end)
 {
   const job* j = data;
   for (size_t v = begin; v < end; v++)
   {
-    double* direction = j->field->min_direction + 3 * v;
-    if (v3_norm2(v3_load(direction)) > 0.5)
-      continue;
-    vec3 n = v3_load(j->field->normal + 3 * v), d = v3(0, 0, 0);
-    if (j->s->fan[v] != AQR_NONE)
-      d = v3_unit(
-        v3_reject(v3_unit(v3_sub(aqr_point(j->s, aqr_to(j->s, j->s->fan[v])), aqr_point(j->s, (aqr_index)v))), n));
-    d = v3_unit(v3_reject(d, n));
-    v3_store(direction, v3_norm2(d) > 0.5 ? d : any_tangent(n));
+    frame at = frame_at(j->field, v);
+    principal p = principal_of(j->t + 6 * v, at);
+    aqr_complex d = p.min_direction;
+    if (d.x == 0 && d.y == 0)
+    {
+      vec3 edge = v3(0, 0, 0);
+      if (j->s->fan[v] != AQR_NONE)
+        edge = v3_sub(aqr_point(j->s, aqr_to(j->s, j->s->fan[v])), aqr_point(j->s, (aqr_index)v));
+      d = cx_unit(cx(v3_dot(edge, at.x), v3_dot(edge, at.y)));
+    }
+    j->field->k_min[v] = p.k_min;
+    j->field->k_max[v] = p.k_max;
+    v3_store(j->field->min_direction + 3 * v, v3_madd(v3_scale(at.x, d.x), d.y, at.y));
   }
 }
 
@@ -176,29 +198,36 @@ static bool allocate(aqr_context* c, const aqr_surface* s, aqr_field* field)
 static aqr_status smooth_tensors(aqr_context* c, job* j, const aqr_tensors* tensors, int iterations)
 {
   aqr_status status = AQR_OK;
-  size_t n = j->s->n_points;
+  size_t n = j->s->n_points, n_faces = j->s->n_faces;
   double* buffer[2] = { NULL, NULL };
+  j->direction = AQR_NEW(c, aqr_rotor, n);
+  j->corner = AQR_NEW(c, aqr_rotor, 3 * n_faces);
+  AQR_REQUIRE(j->direction && j->corner, AQR_OUT_OF_MEMORY);
   for (int i = 0; i < 2 && i < iterations; i++)
   {
     buffer[i] = AQR_NEW(c, double, 6 * n);
     AQR_REQUIRE(buffer[i], AQR_OUT_OF_MEMORY);
   }
+  AQR_TRY(aqr_parallel(c, n_faces, turn_corners, j, 0, 0.1));
   j->t = tensors->t;
   for (int i = 0; i <= iterations; i++)
   {
-    double from = 0.6 * i / (iterations + 1), width = 0.2 / (iterations + 1);
-    AQR_TRY(aqr_parallel(c, n, principal, j, from, from + width));
-    AQR_TRY(aqr_parallel(c, j->s->n_faces, faces_confidence, j, from + width, from + 2 * width));
-    AQR_TRY(aqr_parallel(c, n, points_confidence, j, from + 2 * width, from + 2 * width));
+    double from = 0.1 + 0.5 * i / (iterations + 1), middle = from + 0.25 / (iterations + 1);
+    AQR_TRY(aqr_parallel(c, n, find_directions, j, from, middle));
+    AQR_TRY(aqr_parallel(c, n_faces, faces_confidence, j, middle, middle));
+    AQR_TRY(aqr_parallel(c, n, points_confidence, j, middle, middle));
     if (i == iterations)
       break;
     j->smoothed = buffer[i % 2];
-    AQR_TRY(aqr_parallel(c, n, smooth, j, from + 2 * width, from + 3 * width));
+    AQR_TRY(aqr_parallel(c, n, smooth, j, middle, from + 0.5 / (iterations + 1)));
     j->t = j->smoothed;
   }
+  AQR_TRY(aqr_parallel(c, n, store, j, 0.6, 0.6));
 done:
   AQR_DROP(c, buffer[0], 6 * n);
   AQR_DROP(c, buffer[1], 6 * n);
+  AQR_DROP(c, j->direction, n);
+  AQR_DROP(c, j->corner, 3 * n_faces);
   return status;
 }
 
@@ -224,7 +253,6 @@ aqr_status aqr_direction_field(
   AQR_TRY(aqr_parallel(c, s->n_points, copy_normals, &j, 0, 0));
   AQR_TRY(aqr_neighbours_build(c, s, &around));
   AQR_TRY(smooth_tensors(c, &j, tensors, iterations));
-  AQR_TRY(aqr_parallel(c, s->n_points, complete, &j, 0.6, 0.6));
   AQR_TRY(aqr_cross_field(c, s, &around, min_cosine, field));
 done:
   aqr_neighbours_free(c, &around);

@@ -26,6 +26,21 @@ static inline aqr_complex cx_unit(aqr_complex a)
   return n > 0 ? cx(a.x / n, a.y / n) : cx(1, 0);
 }
 
+/* For arrays of many: unit, or zero where nothing is known. */
+typedef struct aqr_rotor
+{
+  float x, y;
+} aqr_rotor;
+
+static inline aqr_rotor cx_narrow(aqr_complex a)
+{
+  return (aqr_rotor){ (float)a.x, (float)a.y };
+}
+static inline aqr_complex cx_wide(aqr_rotor a)
+{
+  return cx((double)a.x, (double)a.y);
+}
+
 /* A tangent direction at a corner with normal n as a unit complex number in a plane where the edges
  * leaving the corner lie along to_next and to_prev: measured from the edge nearer to the tangent
  * plane. */
