@@ -201,7 +201,7 @@ static double patch_bend(const detector* d, aqr_index h)
       bend += l * size_at(d, g);
       length += l;
     }
-  return length > 0 ? bend / length : pi / 2;
+  return length > 0 ? bend / length : 0;
 }
 
 /* At a crease the surface on either side is smooth compared with it; in the noise of a scan it is not. */
@@ -433,7 +433,7 @@ static aqr_status prune(detector* d)
       run* a = &r.list[i];
       bool loose = a->free[0] || a->free[1];
       /* what hangs together in short pieces must be cleaner */
-      double allowed = rough * fmin(1, 0.25 + 0.75 * a->length / d->min_length);
+      double allowed = rough * fmin(1, 0.5 + 0.5 * a->length / d->min_length);
       a->dropped = (a->closed && a->length < d->min_length) ||
                    (loose && a->length < d->min_length && goes_first(shortest, a)) || wobble(d, &r, a) > zigzag ||
                    a->roughness > allowed;
