@@ -18,10 +18,10 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
+#include "vtkSignedCharArray.h"
 #include "vtkSmartPointer.h"
 #include "vtkTriangleFilter.h"
 #include "vtkTypeInt64Array.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,6 +156,7 @@ vtkMTimeType GeometryTime(vtkPolyData* surface)
 }
 
 //------------------------------------------------------------------------------
+// Small enumerations go into vtkSignedCharArray, since mappers take unsigned char for colors.
 template <typename ArrayT, typename T>
 vtkSmartPointer<ArrayT> NewArray(const char* name, const T* values, size_t tuples, int components = 1)
 {
@@ -557,8 +558,9 @@ void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* o
 
   vtkPointData* pointData = output->GetPointData();
   InterpolatePointData(input->GetPointData(), mesh->origins, mesh->number_of_points, pointData);
-  pointData->SetNormals(NewArray<vtkFloatArray>("Normals", mesh->normals, mesh->number_of_points, 3));
-  pointData->AddArray(NewArray<vtkUnsignedCharArray>("PointKind", mesh->point_kind, mesh->number_of_points));
+  // Not the active normals: one normal a point would blur the creases of a mesh that shares its points.
+  pointData->AddArray(NewArray<vtkFloatArray>("Normals", mesh->normals, mesh->number_of_points, 3));
+  pointData->AddArray(NewArray<vtkSignedCharArray>("PointKind", mesh->point_kind, mesh->number_of_points));
 
   const auto sources = SourceCells(this->Internals->Surface, mesh->face_source, mesh->number_of_faces);
   CopyCellData(input->GetCellData(), sources, output->GetCellData());
@@ -567,7 +569,7 @@ void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* o
   {
     sides[f] = static_cast<int>(mesh->offsets[f + 1] - mesh->offsets[f]);
   }
-  output->GetCellData()->AddArray(NewArray<vtkUnsignedCharArray>("NumberOfSides", sides.data(), sides.size()));
+  output->GetCellData()->AddArray(NewArray<vtkSignedCharArray>("NumberOfSides", sides.data(), sides.size()));
   output->GetCellData()->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", sources.data(), sources.size()));
 }
 
@@ -633,7 +635,7 @@ void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* outp
   pointData->AddArray(NewArray<vtkDoubleArray>("Curvature", lines->curvature, points));
   pointData->AddArray(NewArray<vtkDoubleArray>("ArcLength", lines->arc_length, points));
   pointData->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", cells.data(), points));
-  pointData->AddArray(NewArray<vtkUnsignedCharArray>("Isotropic", lines->isotropic, points));
+  pointData->AddArray(NewArray<vtkSignedCharArray>("Isotropic", lines->isotropic, points));
 
   std::vector<uint8_t> reasons[2];
   for (size_t end = 0; end < 2; ++end)
@@ -645,10 +647,10 @@ void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* outp
     }
   }
   vtkCellData* cellData = output->GetCellData();
-  cellData->SetScalars(NewArray<vtkUnsignedCharArray>("LineType", lines->type, count));
+  cellData->SetScalars(NewArray<vtkSignedCharArray>("LineType", lines->type, count));
   cellData->AddArray(NewArray<vtkIdTypeArray>("LineId", order.data(), count));
-  cellData->AddArray(NewArray<vtkUnsignedCharArray>("StartReason", reasons[0].data(), count));
-  cellData->AddArray(NewArray<vtkUnsignedCharArray>("EndReason", reasons[1].data(), count));
+  cellData->AddArray(NewArray<vtkSignedCharArray>("StartReason", reasons[0].data(), count));
+  cellData->AddArray(NewArray<vtkSignedCharArray>("EndReason", reasons[1].data(), count));
 }
 
 //------------------------------------------------------------------------------

@@ -15,7 +15,8 @@
  * The four output ports:
  * - 0 Remeshed: the quad-dominant surface. Floating-point point arrays of the input are
  *   interpolated, other point arrays are taken from the nearest input point, cell arrays from a
- *   cell below the new face. Added: point arrays `Normals` (of the input surface) and `PointKind`
+ *   cell below the new face. Added: point arrays `Normals` (of the input surface; not active, so that
+ *   creases stay sharp) and `PointKind`
  *   (0 interior, 1 boundary, 2 feature, 3 corner); cell arrays `NumberOfSides` and `SourceCellId`.
  * - 1 PrincipalDirections: the cleaned and triangulated input with point arrays `MinDirection`,
  *   `MaxDirection` (unit tangent vectors), `MinCurvature` and `MaxCurvature` (signed, one over the

@@ -71,7 +71,10 @@ private:
   {
     auto* messages = static_cast<Messages*>(self);
     (event == vtkCommand::ErrorEvent ? messages->Errors : messages->Warnings)++;
-    messages->Text = static_cast<const char*>(text);
+    // Without the place in the source, which says "ERROR" where ctest looks for errors.
+    const std::string message = static_cast<const char*>(text);
+    const size_t begin = message.find("): ");
+    messages->Text = message.substr(begin == std::string::npos ? 0 : begin + 3);
   }
   vtkNew<vtkCallbackCommand> OnError;
 };

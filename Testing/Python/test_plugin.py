@@ -61,10 +61,10 @@ class Plugin(unittest.TestCase):
 
     def test_target_number_of_points_is_met(self):
         self.filter.DensityMode = "Number Of Points"
-        self.filter.TargetNumberOfPoints = 400
+        self.filter.TargetNumberOfPoints = 1000
         self.filter.UpdatePipeline()
         points = self.filter[0].GetDataInformation().GetNumberOfPoints()
-        self.assertLessEqual(abs(points - 400), 20)
+        self.assertLessEqual(abs(points - 1000), 50)
 
 
 if __name__ == "__main__":
