@@ -294,7 +294,7 @@ static aqr_status partition_all(aqr_context* c, aqr_polygon_mesh* m, const aqr_f
   {
     if (f % 65536 == 0)
       AQR_REQUIRE(aqr_step(c, 0.8), AQR_CANCELLED);
-    if (m->faces[f] == AQR_NONE || is_quad(m, f))
+    if (m->faces[f] == AQR_NONE)
       continue;
     size_t n = aqr_pm_face_size(m, f);
     for (bool split = true; split && n > AQR_POLYGON_CORNERS && n > (size_t)o->largest_valence;)

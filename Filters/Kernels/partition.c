@@ -61,8 +61,12 @@ double aqr_polygon_cost(const aqr_polygon* g)
 bool aqr_polygon_is_concave(const aqr_polygon* g)
 {
   for (unsigned i = 0; i < g->n; i++)
-    if (aqr_corner_angle(g->p[i ? i - 1 : g->n - 1], g->p[i], g->p[i + 1 < g->n ? i + 1 : 0], g->normal[i]) > straight)
+  {
+    vec3 a = g->p[i ? i - 1 : g->n - 1], b = g->p[i], c = g->p[i + 1 < g->n ? i + 1 : 0];
+    if (v3_dot(g->normal[i], v3_cross(v3_sub(b, a), v3_sub(c, b))) < 0 &&
+        aqr_corner_angle(a, b, c, g->normal[i]) > straight)
       return true;
+  }
   return false;
 }
 

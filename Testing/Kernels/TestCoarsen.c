@@ -40,8 +40,32 @@ AQR_TEST(a_coarsened_torus_keeps_its_handle_and_its_shape)
     farthest = fmax(farthest, fabs(hypot(hypot(q.x, q.y) - 1, q.z) - 0.4));
   }
   CHECK_BELOW(farthest, 0.2);
+  for (size_t f = 0; f < m.n_faces; f++)
+  {
+    aqr_index h = m.faces[f];
+    vec3 a = aqr_pm_point(&m, aqr_pm_from(&m, h)), b = aqr_pm_point(&m, aqr_pm_to(&m, h));
+    vec3 d = aqr_pm_point(&m, aqr_pm_from(&m, aqr_pm_prev(&m, h)));
+    vec3 q = v3_scale(v3_add(a, v3_add(b, d)), 1.0 / 3);
+    double r = hypot(q.x, q.y);
+    CHECK(v3_dot(v3_cross(v3_sub(b, a), v3_sub(d, a)), v3(q.x * (1 - 1 / r), q.y * (1 - 1 / r), q.z)) > 0);
+  }
   aqr_polygon_mesh_free(&c, &m);
   CHECK(c.bytes == 0);
+}
+
+AQR_TEST(coarsening_a_sheet_turns_no_triangle)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(coarsen_grid(&c, 24, 24, false, on_sheet, 60, &m) == AQR_OK);
+  for (size_t f = 0; f < m.n_faces; f++)
+  {
+    aqr_index h = m.faces[f];
+    vec3 a = aqr_pm_point(&m, aqr_pm_from(&m, h)), b = aqr_pm_point(&m, aqr_pm_to(&m, h));
+    vec3 d = aqr_pm_point(&m, aqr_pm_from(&m, aqr_pm_prev(&m, h)));
+    CHECK(v3_cross(v3_sub(b, a), v3_sub(d, a)).z > 0);
+  }
+  aqr_polygon_mesh_free(&c, &m);
 }
 
 AQR_TEST(coarsening_to_almost_nothing_stops_at_a_valid_mesh)

@@ -118,6 +118,77 @@ static void erase(aqr_polygon_mesh* m, vec3 from, vec3 to)
   }
 }
 
+/* Lines with gaps everywhere, as sampling leaves them. */
+AQR_TEST(lines_with_gaps_give_more_quads_than_they_left_and_no_loose_vertex)
+{
+  for (unsigned seed = 1; seed <= 10; seed++)
+  {
+    aqr_context c = { 0 };
+    aqr_polygon_mesh m = { 0 };
+    unsigned state = seed;
+    size_t before, faces = 0;
+    CHECK(sheet_of_quads(&c, 24, 24, &m));
+    for (unsigned k = 0; k < 60; k++)
+    {
+      double a = (next_random(&state) % 20) / 24.0, b = a + (1 + next_random(&state) % 6) / 24.0;
+      double at = (1 + 2 * (next_random(&state) % 12)) / 24.0;
+      erase(&m, k % 2 ? v3(a, at, 0) : v3(at, a, 0), k % 2 ? v3(b, at, 0) : v3(at, b, 0));
+    }
+    CHECK(aqr_tidy(&c, &m));
+    before = count_quads(&m);
+    for (size_t f = 0; f < m.n_faces; f++)
+      faces += m.faces[f] != AQR_NONE;
+    CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+    CHECK((double)count_quads(&m) / (double)m.n_faces > (double)before / (double)faces + 0.03);
+    for (size_t v = 0; v < m.n_vertices; v++)
+      CHECK(aqr_pm_on_border(&m, (aqr_index)v) || aqr_pm_valence(&m, (aqr_index)v) > 2);
+    aqr_polygon_mesh_free(&c, &m);
+  }
+}
+
+AQR_TEST(concave_faces_are_split)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(sheet_of_quads(&c, 8, 8, &m));
+  /* an L of three cells with sides of four, two and two */
+  erase(&m, v3(0.25, 0.375, 0), v3(0.75, 0.375, 0));
+  erase(&m, v3(0.25, 0.5, 0), v3(0.5, 0.5, 0));
+  erase(&m, v3(0.25, 0.625, 0), v3(0.5, 0.625, 0));
+  erase(&m, v3(0.375, 0.25, 0), v3(0.375, 0.75, 0));
+  erase(&m, v3(0.5, 0.25, 0), v3(0.5, 0.5, 0));
+  erase(&m, v3(0.625, 0.25, 0), v3(0.625, 0.5, 0));
+  CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+  for (aqr_index h = 0; h < m.n_half_edges; h++)
+  {
+    vec3 a = aqr_pm_point(&m, aqr_pm_from(&m, aqr_pm_prev(&m, h))), b = aqr_pm_point(&m, aqr_pm_from(&m, h));
+    vec3 n = v3_cross(v3_sub(b, a), v3_sub(aqr_pm_point(&m, aqr_pm_to(&m, h)), b));
+    CHECK(aqr_pm_face(&m, h) == AQR_NONE || n.z > -1e-12);
+  }
+  aqr_polygon_mesh_free(&c, &m);
+}
+
+static aqr_vertex on_comb(double s, double t)
+{
+  aqr_vertex v = on_sheet(s, t);
+  v.position.y += fmod(floor(s * 12 + 0.5), 2) * 0.03;
+  v.size = 10;
+  return v;
+}
+
+AQR_TEST(bends_of_a_boundary_are_kept)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  unsigned teeth = 0;
+  CHECK(grid_of_quads(&c, 12, 12, false, on_comb, &m));
+  CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+  for (size_t v = 0; v < m.n_vertices; v++)
+    teeth += aqr_pm_on_border(&m, (aqr_index)v) && m.vertices[v].position.y < 0.04;
+  CHECK(teeth == 13);
+  aqr_polygon_mesh_free(&c, &m);
+}
+
 /* A line with a gap of two cells: between its two ends it goes on. */
 AQR_TEST(lines_that_end_towards_each_other_are_joined)
 {
