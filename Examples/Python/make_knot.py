@@ -10,12 +10,8 @@ import sys
 
 def along(t):
     """The curve: a trefoil on a torus."""
-    r = 2 + 0.9 * math.cos(3 * t)
-    return (r * math.cos(2 * t), r * math.sin(2 * t), 0.9 * math.sin(3 * t))
-
-
-def subtract(a, b):
-    return tuple(x - y for x, y in zip(a, b))
+    r = 2 + 0.65 * math.cos(3 * t)
+    return (r * math.cos(2 * t), r * math.sin(2 * t), 0.8 * math.sin(3 * t))
 
 
 def cross(a, b):
@@ -29,12 +25,13 @@ def unit(a):
 
 def point(t, angle):
     step = 1e-3
-    before, here, after = along(t - step), along(t), along(t + step)
-    tangent = unit(subtract(after, before))
-    bend = tuple(a - 2 * h + b for a, h, b in zip(after, here, before))
-    binormal = unit(cross(tangent, bend))
+    here = along(t)
+    tangent = unit(tuple(a - b for a, b in zip(along(t + step), along(t - step))))
+    # Outward from the ring about which the curve winds: a frame that turns evenly.
+    outward = (here[0] - 2 * math.cos(2 * t), here[1] - 2 * math.sin(2 * t), here[2])
+    binormal = unit(cross(tangent, outward))
     normal = cross(binormal, tangent)
-    width, height = 0.42 + 0.12 * math.cos(6 * t), 0.30 - 0.08 * math.cos(6 * t)
+    width, height = 0.36 + 0.1 * math.cos(6 * t), 0.36 - 0.1 * math.cos(6 * t)
     return tuple(
         h + width * math.cos(angle) * n + height * math.sin(angle) * b for h, n, b in zip(here, normal, binormal)
     )
