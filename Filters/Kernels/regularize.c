@@ -249,10 +249,10 @@ static aqr_status part_repeats(aqr_context* c, aqr_polygon_mesh* m)
   size_t known = 0;
   for (aqr_index f = 0; f < m->n_faces; f++)
   {
-    if (f % 65536 == 0)
-      AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
     while (m->faces[f] != AQR_NONE)
     {
+      if (stamp % 4096 == 0)
+        AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
       size_t i, j;
       aqr_index h0, h1;
       AQR_REQUIRE(AQR_RESERVE(c, w.last, w.last_capacity, m->n_vertices) &&

@@ -16,8 +16,8 @@ aqr_status aqr_regularize(aqr_context* c, aqr_polygon_mesh* m);
 
 /* ---- operators that keep a regular mesh regular but for equal faces, or do nothing and say so ---- */
 
-/* Whether the edge of h may be contracted: chains stay apart and on their curves (the start of h is moved unless it is
- * the more constrained end), and no cell degenerates. */
+/* Whether the edge of h may be contracted so that chains stay apart and on their curves, and no cell degenerates:
+ * common neighbours of its ends are corners of the triangles beside it only, common faces are those beside it only. */
 bool aqr_can_contract(const aqr_polygon_mesh* m, aqr_index h);
 /* Contracts into the more constrained end, or into `middle` where both are equally free; returns the vertex that stays.
  */
