@@ -42,6 +42,10 @@ typedef struct job
   aqr_rotor* to;
 } job;
 
+static aqr_complex cx_add(aqr_complex a, aqr_complex b)
+{
+  return cx(a.x + b.x, a.y + b.y);
+}
 static double size(aqr_complex a)
 {
   return sqrt(a.x * a.x + a.y * a.y);
@@ -87,35 +91,42 @@ static bool leaves_seam(const job* j, aqr_index v)
 /* Creases hold the cross firmly, but not at their bends. */
 static aqr_complex seam_anchor(const job* j, aqr_index v)
 {
-  aqr_complex a = border_edge(j, v, v), b = border_edge(j, j->previous[v], v);
-  aqr_complex mean = cx((a.x + b.x) / 2, (a.y + b.y) / 2);
-  return size(mean) >= seam_agreement ? cx_unit(mean) : cx(0, 0);
+  aqr_complex mean = cx_add(border_edge(j, v, v), border_edge(j, j->previous[v], v));
+  return size(mean) >= 2 * seam_agreement ? cx_unit(mean) : cx(0, 0);
 }
 
-/* The tangent of a boundary over several edges, the weaker the more these disagree: scanned borders
- * are ragged. */
+/* The tangent of a boundary, the weaker the less clear it is: either the chords over several edges
+ * to both sides agree, as on scanned borders that are ragged, or the edges themselves do, as around
+ * right-angled corners. Ends where the boundary becomes a seam. */
 static aqr_complex boundary_anchor(const job* j, aqr_index v)
 {
-  aqr_complex sum = cx(0, 0);
-  double weights = 0;
-  aqr_index ahead = v, behind = j->previous[v];
+  const aqr_surface* s = j->s;
+  aqr_index ahead = v, behind = v;
+  aqr_complex edges = cx(0, 0);
+  double n = 0;
   for (int i = 0; i < border_reach; i++)
   {
-    double w = border_reach - i;
-    const aqr_index ends[2] = { ahead, behind };
+    const aqr_index from[2] = { ahead, j->previous[behind] };
     for (int k = 0; k < 2; k++)
-      if (ends[k] != AQR_NONE && aqr_is_boundary(j->s, j->s->fan[ends[k]]))
+      if (aqr_is_boundary(s, s->fan[from[k]]))
       {
-        aqr_complex a = border_edge(j, ends[k], v);
-        sum = cx(sum.x + w * a.x, sum.y + w * a.y);
-        weights += w;
+        edges = cx_add(edges, border_edge(j, from[k], v));
+        n++;
+        if (k == 0)
+          ahead = aqr_to(s, s->fan[ahead]);
+        else
+          behind = j->previous[behind];
       }
-    ahead = ahead == AQR_NONE || !aqr_is_boundary(j->s, j->s->fan[ahead]) ? AQR_NONE : aqr_to(j->s, j->s->fan[ahead]);
-    behind = behind == AQR_NONE ? AQR_NONE : j->previous[behind];
   }
-  double agreement = weights > 0 ? size(sum) / weights : 0;
-  aqr_complex unit = cx_unit(sum);
-  return cx(border_weight * agreement * agreement * unit.x, border_weight * agreement * agreement * unit.y);
+  if (n > 0)
+    edges = cx(edges.x / n, edges.y / n);
+  vec3 p = aqr_point(s, v);
+  aqr_complex chords = cx_add(
+    in_frame(j->field, v, v3_sub(aqr_point(s, ahead), p)), in_frame(j->field, v, v3_sub(p, aqr_point(s, behind))));
+  chords = cx(chords.x / 2, chords.y / 2);
+  aqr_complex best = size(edges) > size(chords) ? edges : chords;
+  double w = border_weight * size(best);
+  return cx(w * best.x, w * best.y);
 }
 
 static void anchors(void* data, size_t begin, size_t end)
@@ -137,7 +148,7 @@ static void anchors(void* data, size_t begin, size_t end)
       else
       {
         b = boundary_anchor(j, (aqr_index)v);
-        a = cx(a.x + (1 - w) * (1 - w) * b.x, a.y + (1 - w) * (1 - w) * b.y);
+        a = cx_add(a, cx((1 - w) * (1 - w) * b.x, (1 - w) * (1 - w) * b.y));
       }
     }
     j->anchor[v] = cx_narrow(a);
@@ -190,7 +201,7 @@ static void sweep(void* data, size_t begin, size_t end)
   {
     size_t v = j->active[a];
     aqr_complex sum = mean_around(j, j->from, a), own = cx_wide(j->anchor[v]);
-    sum = cx(sum.x + pull * own.x, sum.y + pull * own.y);
+    sum = cx_add(sum, cx(pull * own.x, pull * own.y));
     j->to[v] = size(sum) > 0 ? cx_narrow(cx_unit(sum)) : j->from[v];
   }
 }
