@@ -7,7 +7,8 @@
 enum
 {
   most_steps = 200000,
-  most_closing_faces = 400
+  most_closing_faces = 400,
+  in_place = 48 /* steps after which a line that has not got away turns around a point of the field */
 };
 
 static const double stop_distance = 0.4; /* of the spacing: nearer than this to a line of its family a line ends */
@@ -146,6 +147,7 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
   const aqr_surface* s = g->surface;
   double step = 0, length = 0, since_query = 0, arc = 0;
   size_t entered = 0;
+  vec3 seen = aqr_tracer_position(t);
   aqr_status status = AQR_OK;
   *end = AQR_END_LENGTH;
   for (int i = 0; i < most_steps && length < longest_line; i++)
@@ -158,6 +160,15 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
     if (step == 0)
       step = longest_step * least;
     vec3 from = aqr_tracer_position(t);
+    if (i % in_place == 0)
+    {
+      if (i && v3_norm(v3_sub(from, seen)) < least / 4)
+      {
+        *end = AQR_END_SELF;
+        break;
+      }
+      seen = from;
+    }
     aqr_advance result;
     AQR_TRY(aqr_tracer_step(c, t, &step, shortest_step * least, longest_step * least, &result));
     if (result == AQR_AT_BORDER)

@@ -588,17 +588,31 @@ static aqr_status corner_stop(builder* b, aqr_index point, aqr_index* stop)
   return AQR_OK;
 }
 
+/* Notes the edge on the chain's samples [from, to): those whose half-edge it covers from the start on. */
+static void cover_samples(aqr_network* net, aqr_index from, aqr_index to, aqr_index edge)
+{
+  for (aqr_index i = from; i < to; i++)
+    net->edge_at[i] = edge;
+}
+
+/* The first sample at or after a stop. */
+static aqr_index sample_from(const aqr_stop* x)
+{
+  return x->t > 0 ? x->sample + 1 : x->sample;
+}
+
 static aqr_status connect_chain(builder* b, aqr_index id, size_t first, size_t end)
 {
   const aqr_line* line = &b->l->lines[id];
   const aqr_sample* m = b->l->samples;
   aqr_network* net = b->net;
   aqr_index n = (aqr_index)net->n_crossings, edge, before = AQR_NONE, last = AQR_NONE;
+  aqr_index start = (aqr_index)line->first, stop = (aqr_index)(line->first + line->count - 1), from = start;
   aqr_status status = AQR_OK;
   if (!line->closed)
   {
-    AQR_TRY(corner_stop(b, aqr_from(b->s, m[line->first].edge), &before));
-    AQR_TRY(corner_stop(b, aqr_to(b->s, m[line->first + line->count - 2].edge), &last));
+    AQR_TRY(corner_stop(b, aqr_from(b->s, m[start].edge), &before));
+    AQR_TRY(corner_stop(b, aqr_to(b->s, m[stop - 1].edge), &last));
   }
   else
     before = last = (aqr_index)(end - 1);
@@ -608,6 +622,10 @@ static aqr_status connect_chain(builder* b, aqr_index id, size_t first, size_t e
     if (i > first || line->closed)
       net->stops[before].out = edge;
     net->stops[i].in = edge;
+    cover_samples(net, from, sample_from(&net->stops[i]), edge);
+    if (i == first && line->closed) /* around the loop's start */
+      cover_samples(net, sample_from(&net->stops[end - 1]), stop, edge);
+    from = sample_from(&net->stops[i]);
     before = (aqr_index)i;
   }
   if (!line->closed)
@@ -615,6 +633,7 @@ static aqr_status connect_chain(builder* b, aqr_index id, size_t first, size_t e
     AQR_TRY(add_edge(b, n + before, n + last, line->type, &edge));
     if (end > first)
       net->stops[before].out = edge;
+    cover_samples(net, from, stop, edge);
   }
 done:
   return status;

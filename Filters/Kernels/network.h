@@ -43,7 +43,7 @@ typedef struct aqr_network
   uint8_t* type;   /* per edge, aqr_line_type */
   size_t n_edges, edge_capacity;
   size_t n_loops;
-  aqr_index* edge_at; /* per sample of a curvature line: the edge that passes through it, or AQR_NONE */
+  aqr_index* edge_at; /* per sample: the edge that passes through it, on a chain that goes on from it; or AQR_NONE */
   size_t n_samples;
 } aqr_network;
 

@@ -22,9 +22,27 @@ typedef struct layout
   size_t n_marks, capacity;
   uint64_t* signature;
   size_t signature_capacity;
+  aqr_index* group; /* of stretches, union-find */
+  size_t group_capacity;
   aqr_index* item; /* per cell: an item of its region */
   size_t n_cells, item_capacity;
 } layout;
+
+/* A piece of a cell's border: of an edge of the face, or a contact with the network. */
+typedef struct piece
+{
+  aqr_index cell, half_edge;
+  aqr_index from, to; /* vertices */
+  double t;           /* where an arc passes, on half_edge */
+  bool is_contact;    /* the network lies there: a chain's edge, or a chord past whose end on half_edge the arc goes */
+  bool is_chord;
+} piece;
+
+/* The pieces of a face: of half-edge k from first[k] on, contacts with chords from first[3] to end. */
+typedef struct slot
+{
+  aqr_index first[4], end;
+} slot;
 
 typedef struct regions
 {
@@ -38,14 +56,19 @@ typedef struct regions
   int32_t* euler;    /* per root */
   uint8_t* bordered; /* per root: bit 0 has a loop, bit 1 has a cell */
   layout at;         /* of the face looked at */
-  aqr_index* base;   /* per face in a region to be cut: its first cell */
-  /* per cell of such regions */
+  /* of regions to be cut */
+  aqr_index* slot; /* per face: where its pieces are listed, or AQR_NONE */
+  slot* slots;
+  size_t n_slots, slot_capacity;
+  piece* pieces;
+  size_t n_pieces, piece_capacity;
   struct cell
   {
-    aqr_index face, from; /* `from`: the half-edge of its face over which the search came; AQR_NONE at the border */
-    double t;             /* where on `from` */
-    aqr_index before;     /* the cell it came from */
-    uint32_t distance;    /* UINT32_MAX: not reached */
+    aqr_index face;
+    aqr_index before;  /* the cell the search came from; AQR_NONE at a root */
+    aqr_index exit;    /* the piece of this cell towards it, or the root's contact */
+    uint32_t distance; /* UINT32_MAX: not reached */
+    bool wanted;       /* of a region to be cut */
   } * cells;
   size_t n_cells, cell_capacity;
   aqr_index* queue;
@@ -135,7 +158,8 @@ static aqr_status lay_out(regions* r, aqr_index f)
   if (status != AQR_OK)
     return status;
   if (!AQR_RESERVE(r->c, a->item, a->item_capacity, a->n_marks + 1) ||
-      !AQR_RESERVE(r->c, a->signature, a->signature_capacity, a->n_marks + 1))
+      !AQR_RESERVE(r->c, a->signature, a->signature_capacity, a->n_marks + 1) ||
+      !AQR_RESERVE(r->c, a->group, a->group_capacity, a->n_marks + 1))
     return AQR_OUT_OF_MEMORY;
   if (a->n_marks == 0)
   {
@@ -148,34 +172,31 @@ static aqr_status lay_out(regions* r, aqr_index f)
   {
     signature ^= hash(a->marks[i].chord);
     a->signature[i] = signature;
-    a->marks[i].cell = (unsigned)i;
   }
   size_t n = a->n_marks;
   for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < n; j++)
-    {
-      bool same = a->signature[i] == a->signature[j] || (!a->marks[j].kept && (j + n - 1) % n == i);
-      unsigned low = a->marks[i].cell, high = a->marks[j].cell;
-      if (!same || low == high)
-        continue;
-      for (size_t k = 0; k < n; k++)
-        if (a->marks[k].cell == high)
-          a->marks[k].cell = low;
-    }
+    a->group[i] = (aqr_index)i;
+  for (size_t i = 0; i < n; i++)
+  {
+    if (!a->marks[i].kept)
+      unite(a->group, (aqr_index)i, (aqr_index)((i + n - 1) % n));
+    size_t j = i; /* equal signatures: to the nearest one before is enough */
+    while (j > 0 && a->signature[j - 1] != a->signature[i])
+      j--;
+    if (j > 0)
+      unite(a->group, (aqr_index)i, (aqr_index)(j - 1));
+  }
   a->n_cells = 0;
   for (size_t i = 0; i < n; i++)
-  {
-    unsigned old = a->marks[i].cell;
-    if (old < a->n_cells + n && old >= n) /* numbered already */
-      continue;
-    for (size_t k = i; k < n; k++)
-      if (a->marks[k].cell == old)
-        a->marks[k].cell = (unsigned)(n + a->n_cells);
-    a->item[a->n_cells++] = AQR_NONE;
-  }
+    if (find(a->group, (aqr_index)i) == i) /* the least of its group, so that it is numbered first */
+    {
+      a->marks[i].cell = (unsigned)a->n_cells;
+      a->item[a->n_cells++] = AQR_NONE;
+    }
+  for (size_t i = 0; i < n; i++)
+    a->marks[i].cell = a->marks[find(a->group, (aqr_index)i)].cell;
   for (size_t i = 0; i < n; i++)
   {
-    a->marks[i].cell -= (unsigned)n;
     if (a->marks[i].kept)
       a->item[a->marks[i].cell] = item_after(r, &a->marks[i]);
     if (a->marks[(i + 1) % n].kept)
@@ -222,6 +243,23 @@ static size_t kept_on(const regions* r, unsigned k)
   return kept;
 }
 
+/* Unites the cells that border chains with the loops there, where no mark tells the loop already. */
+static void unite_with_chains(regions* r)
+{
+  const layout* a = &r->at;
+  for (aqr_index k = r->lines->head[a->face]; k != AQR_NONE; k = r->lines->segments[k].next)
+  {
+    aqr_index n = r->lines->segments[k].sample;
+    if (!r->lines->lines[r->lines->segments[k].line].is_chain)
+      continue;
+    aqr_index left = r->lines->samples[n].edge, edge = r->net->edge_at[n];
+    bool right = aqr_face_of(left) != a->face;
+    aqr_index h = right ? aqr_any_twin(r->s, left) : left;
+    if (kept_on(r, h % 3) == 0)
+      unite(r->parent, item_at_start(r, h % 3), (aqr_index)r->s->n_faces + r->net->loop[2 * edge + right]);
+  }
+}
+
 /* Unites what belongs together inside faces and over whole edges. Stretches of cut edges need nothing: both sides of
  * them border the same loop. `start` (one per half-edge) holds the item there, AQR_NONE on cut edges. */
 static aqr_status unite_cells(regions* r, aqr_index* start)
@@ -243,6 +281,7 @@ static aqr_status unite_cells(regions* r, aqr_index* start)
       if (a->marks[(i + 1) % a->n_marks].kept)
         unite(r->parent, item, item_before(r, &a->marks[(i + 1) % a->n_marks]));
     }
+    unite_with_chains(r);
     for (unsigned k = 0; k < 3; k++)
     {
       aqr_index h = 3 * f + k, t = aqr_twin(s, h);
@@ -304,131 +343,193 @@ static bool needs_cut(const regions* r, aqr_index item)
   return r->bordered[root] == 3 && r->euler[root] < 1;
 }
 
-/* ---- searching ---- */
+/* ---- the cells of the regions to be cut ---- */
 
-/* Numbers the cells of all regions to be cut; base[f] is AQR_NONE in faces that have none. */
-static aqr_status number_cells(regions* r)
+/* Vertices of the graph that pieces run between: points of the surface, and both sides of the samples. */
+static aqr_index vertex_beside(const regions* r, const border_mark* m, bool after)
+{
+  bool right = m->starts == after;
+  return (aqr_index)(r->s->n_points + 2 * (size_t)m->sample + right);
+}
+
+static double position_on(const regions* r, aqr_index h, const border_mark* m)
+{
+  const aqr_sample* a = &r->lines->samples[m->sample];
+  return a->edge == h ? a->t : 1 - a->t;
+}
+
+/* Halfway from a position on half-edge k to the next mark, kept or not, or to the end of the half-edge. */
+static double halfway(const regions* r, unsigned k, double from, bool forward)
+{
+  size_t first, end;
+  marks_on(r, k, &first, &end);
+  double to = forward ? 1 : 0;
+  for (size_t i = first; i < end; i++)
+  {
+    double t = position_on(r, 3 * r->at.face + k, &r->at.marks[i]);
+    if (forward ? t > from && t < to : t < from && t > to)
+      to = t;
+  }
+  return (from + to) / 2;
+}
+
+static aqr_status add_piece(regions* r, piece p)
+{
+  if (!AQR_RESERVE(r->c, r->pieces, r->piece_capacity, r->n_pieces + 1))
+    return AQR_OUT_OF_MEMORY;
+  r->pieces[r->n_pieces++] = p;
+  return AQR_OK;
+}
+
+/* The pieces of half-edge k between its corners and kept marks. */
+static aqr_status add_pieces_on(regions* r, unsigned k, aqr_index first_cell)
+{
+  const layout* a = &r->at;
+  const aqr_surface* s = r->s;
+  aqr_index h = 3 * a->face + k;
+  size_t first, end;
+  marks_on(r, k, &first, &end);
+  piece p = { .cell = first_cell + cell_before(a, first),
+    .half_edge = h,
+    .from = aqr_from(s, h),
+    .is_contact = aqr_twin(s, h) == AQR_NONE };
+  double start = 0;
+  for (size_t i = first; i <= end; i++)
+  {
+    const border_mark* m = i < end ? &a->marks[i] : NULL;
+    if (m && !m->kept)
+      continue;
+    p.to = m ? vertex_beside(r, m, false) : aqr_to(s, h);
+    p.t = halfway(r, k, start, true);
+    aqr_status status = add_piece(r, p);
+    if (status != AQR_OK || !m)
+      return status;
+    start = position_on(r, h, m);
+    p.cell = first_cell + m->cell;
+    p.from = vertex_beside(r, m, true);
+  }
+  return AQR_OK;
+}
+
+/* The contacts of cells with chords: from where a stretch of a cell's border ends at a kept mark to where its next
+ * begins. An arc leaves over such a contact just past the mark, so that it crosses the mark's chord. */
+static aqr_status add_contacts(regions* r, aqr_index first_cell)
+{
+  const layout* a = &r->at;
+  for (size_t i = 0; i < a->n_marks; i++)
+  {
+    if (!a->marks[i].kept)
+      continue;
+    unsigned cell = cell_before(a, i);
+    size_t next = i;
+    do
+      next = (next + 1) % a->n_marks;
+    while (next != i && !(a->marks[next].kept && a->marks[next].cell == cell));
+    aqr_index h = aqr_sample_half_edge(r->s, &r->lines->samples[a->marks[i].sample], a->face);
+    piece p = { .cell = first_cell + cell,
+      .half_edge = h,
+      .from = vertex_beside(r, &a->marks[i], false),
+      .to = vertex_beside(r, &a->marks[next], true),
+      .is_contact = true,
+      .is_chord = true };
+    p.t = halfway(r, h % 3, position_on(r, h, &a->marks[i]), true);
+    aqr_status status = add_piece(r, p);
+    if (status != AQR_OK)
+      return status;
+  }
+  return AQR_OK;
+}
+
+/* Lists the cells of all faces that have some of a region to be cut, and their pieces. */
+static aqr_status list_cells(regions* r)
 {
   const aqr_surface* s = r->s;
-  r->n_cells = 0;
   for (aqr_index f = 0; f < s->n_faces; f++)
   {
+    if (f % 65536 == 0 && !aqr_step(r->c, 0.95))
+      return AQR_CANCELLED;
+    r->slot[f] = AQR_NONE;
     aqr_status status = lay_out(r, f);
     if (status != AQR_OK)
       return status;
-    r->base[f] = AQR_NONE;
+    bool any = false;
     for (size_t i = 0; i < r->at.n_cells; i++)
-      if (needs_cut(r, r->at.item[i]))
-        r->base[f] = (aqr_index)r->n_cells;
-    if (r->base[f] == AQR_NONE)
+      any |= needs_cut(r, r->at.item[i]);
+    if (!any)
       continue;
-    if (!AQR_RESERVE(r->c, r->cells, r->cell_capacity, r->n_cells + r->at.n_cells))
+    if (!AQR_RESERVE(r->c, r->cells, r->cell_capacity, r->n_cells + r->at.n_cells) ||
+        !AQR_RESERVE(r->c, r->slots, r->slot_capacity, r->n_slots + 1))
       return AQR_OUT_OF_MEMORY;
+    aqr_index first_cell = (aqr_index)r->n_cells;
     for (size_t i = 0; i < r->at.n_cells; i++)
-      r->cells[r->n_cells++] = (struct cell){ f, AQR_NONE, 0, AQR_NONE, UINT32_MAX };
+      r->cells[r->n_cells++] = (struct cell){ f, AQR_NONE, AQR_NONE, UINT32_MAX, needs_cut(r, r->at.item[i]) };
+    r->slot[f] = (aqr_index)r->n_slots;
+    slot* at = &r->slots[r->n_slots++];
+    for (unsigned k = 0; k < 3; k++)
+    {
+      at->first[k] = (aqr_index)r->n_pieces;
+      status = add_pieces_on(r, k, first_cell);
+      if (status != AQR_OK)
+        return status;
+    }
+    at->first[3] = (aqr_index)r->n_pieces;
+    status = add_contacts(r, first_cell);
+    if (status != AQR_OK)
+      return status;
+    at->end = (aqr_index)r->n_pieces;
   }
   return AQR_OK;
 }
 
-/* A point of the j-th stretch of half-edge k that no mark lies on, and the stretch's cell. */
-static double stretch_middle(const regions* r, unsigned k, size_t first, size_t end, size_t j, unsigned* cell)
+/* The same piece seen from the other face: pieces of an edge come in opposite orders on its two sides. */
+static aqr_index across(const regions* r, aqr_index i)
 {
-  const layout* a = &r->at;
-  aqr_index h = 3 * a->face + k;
-  double low = 0, high = 1;
-  for (size_t i = first; i < end; i++)
-  {
-    const aqr_sample* m = &r->lines->samples[a->marks[i].sample];
-    double t = m->edge == h ? m->t : 1 - m->t;
-    if (i < first + j)
-      low = fmax(low, t);
-    else
-      high = fmin(high, t);
-  }
-  *cell = j ? a->marks[first + j - 1].cell : cell_before(a, first);
-  return (low + high) / 2;
+  aqr_index h = r->pieces[i].half_edge, t = aqr_twin(r->s, h);
+  const slot *here = &r->slots[r->slot[h / 3]], *there = &r->slots[r->slot[t / 3]];
+  return there->first[t % 3 + 1] - 1 - (i - here->first[h % 3]);
 }
 
-/* The cell on the other side of half-edge h at position t of h. */
-static aqr_status cell_across(regions* r, aqr_index h, double t, aqr_index* cell)
+static bool leads_on(const regions* r, aqr_index i)
 {
-  aqr_index twin = aqr_twin(r->s, h);
-  aqr_status status = lay_out(r, aqr_face_of(twin));
-  if (status != AQR_OK)
-    return status;
-  size_t first, end;
-  marks_on(r, twin % 3, &first, &end);
-  unsigned local = cell_before(&r->at, first);
-  for (size_t i = first; i < end; i++)
-  {
-    const aqr_sample* m = &r->lines->samples[r->at.marks[i].sample];
-    if ((m->edge == twin ? m->t : 1 - m->t) < 1 - t)
-      local = r->at.marks[i].cell;
-  }
-  *cell = r->base[aqr_face_of(twin)] == AQR_NONE ? AQR_NONE : r->base[aqr_face_of(twin)] + local;
-  return AQR_OK;
+  aqr_index t = r->pieces[i].is_contact ? AQR_NONE : aqr_twin(r->s, r->pieces[i].half_edge);
+  return t != AQR_NONE && r->slot[t / 3] != AQR_NONE;
 }
 
-/* Breadth-first forest over the cells, rooted at all cells on the border of their region. */
+/* Breadth-first forest over the cells. Its roots are the cells that touch the network; each holds the contact over
+ * which an arc leaves it, the others the piece over which the search came. */
 static aqr_status search(regions* r)
 {
-  const aqr_surface* s = r->s;
   size_t head = 0, tail = 0;
   if (!AQR_RESERVE(r->c, r->queue, r->queue_capacity, r->n_cells))
     return AQR_OUT_OF_MEMORY;
-  for (aqr_index i = 0; i < r->n_cells; i++)
+  for (aqr_index i = 0; i < r->n_pieces; i++)
   {
-    aqr_index f = r->cells[i].face;
-    aqr_status status = lay_out(r, f);
-    if (status != AQR_OK)
-      return status;
-    aqr_index local = i - r->base[f];
-    if (!needs_cut(r, r->at.item[local]))
+    aqr_index k = r->pieces[i].cell;
+    struct cell* at = &r->cells[k];
+    if (!r->pieces[i].is_contact || !at->wanted || at->distance == 0)
       continue;
-    bool root = r->at.n_marks > 0;
-    for (unsigned k = 0; k < 3; k++)
-      root |= aqr_twin(s, 3 * f + k) == AQR_NONE;
-    if (root)
-    {
-      r->cells[i].distance = 0;
-      r->queue[tail++] = i;
-    }
+    at->distance = 0;
+    at->exit = i;
+    r->queue[tail++] = k;
   }
   while (head < tail)
   {
-    aqr_index i = r->queue[head++], f = r->cells[i].face;
-    if (head % 1024 == 0 && !aqr_step(r->c, 0.95))
+    aqr_index k = r->queue[head++];
+    if (head % 4096 == 0 && !aqr_step(r->c, 0.97))
       return AQR_CANCELLED;
-    for (unsigned k = 0; k < 3; k++)
+    const slot* at = &r->slots[r->slot[r->cells[k].face]];
+    for (aqr_index i = at->first[0]; i < at->first[3]; i++)
     {
-      aqr_index h = 3 * f + k;
-      if (aqr_twin(s, h) == AQR_NONE)
+      if (r->pieces[i].cell != k || !leads_on(r, i))
         continue;
-      aqr_status status = lay_out(r, f);
-      if (status != AQR_OK)
-        return status;
-      size_t first, end;
-      marks_on(r, k, &first, &end);
-      for (size_t j = 0; j <= end - first; j++)
-      {
-        unsigned local;
-        aqr_index next;
-        double t = stretch_middle(r, k, first, end, j, &local);
-        if (r->base[f] + local != i)
-          continue;
-        status = cell_across(r, h, t, &next);
-        if (status == AQR_OK)
-          status = lay_out(r, f);
-        if (status != AQR_OK)
-          return status;
-        if (next == AQR_NONE || r->cells[next].distance != UINT32_MAX)
-          continue;
-        r->cells[next].distance = r->cells[i].distance + 1;
-        r->cells[next].before = i;
-        r->cells[next].from = aqr_twin(s, h);
-        r->cells[next].t = 1 - t;
-        r->queue[tail++] = next;
-      }
+      aqr_index back = across(r, i);
+      struct cell* next = &r->cells[r->pieces[back].cell];
+      if (next->distance != UINT32_MAX)
+        continue;
+      next->distance = r->cells[k].distance + 1;
+      next->before = k;
+      next->exit = back;
+      r->queue[tail++] = r->pieces[back].cell;
     }
   }
   return AQR_OK;
@@ -436,12 +537,10 @@ static aqr_status search(regions* r)
 
 /* ---- arcs ---- */
 
-/* A whole edge inside a region that the search did not come over; the arc through it leads to the border on both sides.
- */
+/* A piece that the forest does not use: the arc over it leads to the network on both sides. */
 typedef struct link
 {
-  aqr_index edge;
-  aqr_index cell[2]; /* of the edge's half-edge and of its twin */
+  aqr_index piece;
   uint32_t length;
 } link;
 
@@ -450,41 +549,30 @@ static int by_length(const void* a, const void* b)
   const link *x = a, *y = b;
   if (x->length != y->length)
     return x->length < y->length ? -1 : 1;
-  return (x->edge > y->edge) - (x->edge < y->edge);
+  return (x->piece > y->piece) - (x->piece < y->piece);
 }
 
-/* The links of which both ends are vertices inside a region. */
 static aqr_status gather_links(regions* r, link** links, size_t* n, size_t* capacity)
 {
-  const aqr_surface* s = r->s;
-  for (aqr_index i = 0; i < r->n_cells; i++)
+  for (aqr_index i = 0; i < r->n_pieces; i++)
   {
-    aqr_index f = r->cells[i].face;
-    if (r->cells[i].distance == UINT32_MAX)
+    const struct cell* at = &r->cells[r->pieces[i].cell];
+    if (at->distance == UINT32_MAX || at->exit == i)
       continue;
-    for (unsigned k = 0; k < 3; k++)
+    uint32_t length = at->distance;
+    if (!r->pieces[i].is_contact)
     {
-      aqr_index h = 3 * f + k, t = aqr_twin(s, h), other;
-      if (t == AQR_NONE || t < h || on_chain(r, aqr_from(s, h)) || on_chain(r, aqr_to(s, h)))
+      if (!leads_on(r, i))
         continue;
-      aqr_status status = lay_out(r, f);
-      if (status != AQR_OK)
-        return status;
-      size_t first, end;
-      marks_on(r, k, &first, &end);
-      if (kept_on(r, k) || r->base[f] + cell_before(&r->at, first) != i)
+      aqr_index back = across(r, i);
+      const struct cell* other = &r->cells[r->pieces[back].cell];
+      if (back < i || other->distance == UINT32_MAX || other->exit == back)
         continue;
-      status = cell_across(r, h, 0.5, &other);
-      if (status != AQR_OK)
-        return status;
-      if (other == AQR_NONE || r->cells[other].distance == UINT32_MAX ||
-          (r->cells[i].before == other && r->cells[i].from == h) ||
-          (r->cells[other].before == i && r->cells[other].from == t))
-        continue;
-      if (!AQR_RESERVE(r->c, *links, *capacity, *n + 1))
-        return AQR_OUT_OF_MEMORY;
-      (*links)[(*n)++] = (link){ h, { i, other }, r->cells[i].distance + r->cells[other].distance };
+      length += other->distance;
     }
+    if (!AQR_RESERVE(r->c, *links, *capacity, *n + 1))
+      return AQR_OUT_OF_MEMORY;
+    (*links)[(*n)++] = (link){ i, length };
   }
   return AQR_OK;
 }
@@ -498,115 +586,93 @@ typedef struct hub
 
 static void hang(const regions* r, hub* hubs, const link* links, uint32_t i, bool off)
 {
+  const piece* p = &r->pieces[links[i].piece];
   for (unsigned k = 0; k < 2; k++)
   {
-    hub* at = &hubs[k ? aqr_to(r->s, links[i].edge) : aqr_from(r->s, links[i].edge)];
+    hub* at = &hubs[k ? p->to : p->from];
     at->degree += off ? UINT32_MAX : 1;
     at->links ^= i;
   }
 }
 
-/* Takes away the link that hangs alone at a vertex, and what then hangs alone at its other end, and so on: an arc
- * through one of those would cut off a disk. */
+/* Takes away the link that hangs alone at a vertex, and what then hangs alone at its other end, and so on: an arc over
+ * one of those would cut off a disk. */
 static void strip(const regions* r, hub* hubs, const link* links, uint8_t* gone, aqr_index vertex)
 {
   while (hubs[vertex].degree == 1)
   {
     uint32_t i = hubs[vertex].links;
+    const piece* p = &r->pieces[links[i].piece];
     gone[i] = 1;
     hang(r, hubs, links, i, true);
-    aqr_index a = aqr_from(r->s, links[i].edge);
-    vertex = a == vertex ? aqr_to(r->s, links[i].edge) : a;
+    vertex = p->from == vertex ? p->to : p->from;
   }
 }
 
-static aqr_sample sample_on(const regions* r, aqr_index h, double t, aqr_index face)
+static aqr_status push(regions* r, aqr_index i, aqr_index face)
 {
-  aqr_index edge = aqr_edge_of(r->s, h);
-  double at = edge == h ? t : 1 - t;
-  return (aqr_sample){ .p = aqr_edge_point(r->s, edge, at), .t = at, .edge = edge, .face = face };
-}
-
-/* Where an arc leaves its last cell: over a boundary or seam of it, or past a kept mark next to it, so that it crosses
- * the mark's chord. */
-static aqr_status last_sample(regions* r, aqr_index cell, aqr_sample* sample, uint8_t* end)
-{
-  const aqr_surface* s = r->s;
-  aqr_index f = r->cells[cell].face, came = r->cells[cell].from;
-  aqr_status status = lay_out(r, f);
-  if (status != AQR_OK)
-    return status;
-  const layout* a = &r->at;
-  unsigned local = cell - r->base[f];
-  for (unsigned k = 0; k < 3; k++)
-  {
-    aqr_index h = 3 * f + k;
-    size_t first, stop;
-    marks_on(r, k, &first, &stop);
-    if (aqr_twin(s, h) != AQR_NONE)
-      continue;
-    for (size_t j = 0; j <= stop - first; j++)
-    {
-      unsigned of;
-      double t = stretch_middle(r, k, first, stop, j, &of);
-      if (of != local)
-        continue;
-      *sample = sample_on(r, h, t, f);
-      *end = aqr_is_seam(s, h) ? AQR_END_FEATURE : AQR_END_BOUNDARY;
-      return AQR_OK;
-    }
-  }
-  /* a mark at either end of a stretch of the cell, best one not on the edge the arc came over */
-  for (unsigned pass = 0; pass < 2; pass++)
-    for (size_t i = 0; i < a->n_marks; i++)
-      for (unsigned after = 0; after < 2; after++)
-      {
-        unsigned of = after ? a->marks[i].cell : cell_before(a, i);
-        aqr_index h = aqr_sample_half_edge(s, &r->lines->samples[a->marks[i].sample], f);
-        if (!a->marks[i].kept || of != local || (pass == 0 && h == came))
-          continue;
-        size_t first, stop;
-        unsigned beyond;
-        marks_on(r, h % 3, &first, &stop);
-        double t = stretch_middle(r, h % 3, first, stop, i - first + (after ? 0 : 1), &beyond);
-        *sample = sample_on(r, h, t, f);
-        *end = AQR_END_CUT;
-        return AQR_OK;
-      }
-  return AQR_INTERNAL;
-}
-
-static aqr_status push(regions* r, aqr_sample sample)
-{
+  const piece* p = &r->pieces[i];
+  aqr_index edge = aqr_edge_of(r->s, p->half_edge);
+  double t = edge == p->half_edge ? p->t : 1 - p->t;
   if (!AQR_RESERVE(r->c, r->drawn, r->drawn_capacity, r->n_drawn + 1))
     return AQR_OUT_OF_MEMORY;
-  r->drawn[r->n_drawn++] = sample;
+  r->drawn[r->n_drawn++] = (aqr_sample){ .p = aqr_edge_point(r->s, edge, t), .t = t, .edge = edge, .face = face };
   return AQR_OK;
 }
 
-/* Draws the arc through a link: from the border to the link on one side, from the link to the border on the other. */
+static uint8_t end_of(const regions* r, aqr_index i)
+{
+  const piece* p = &r->pieces[i];
+  if (p->is_chord)
+    return AQR_END_CUT;
+  return aqr_is_seam(r->s, p->half_edge) ? AQR_END_FEATURE : AQR_END_BOUNDARY;
+}
+
+/* The way from a cell to the network, over the pieces the search came by; `towards` says whether a sample's face is
+ * that of the chord after it on the way out, or before. */
+static aqr_status push_way_out(regions* r, aqr_index k, bool outwards, uint8_t* end)
+{
+  for (;;)
+  {
+    const struct cell* at = &r->cells[k];
+    bool last = at->before == AQR_NONE;
+    aqr_index face = outwards && !last ? r->cells[at->before].face : at->face;
+    aqr_status status = push(r, at->exit, face);
+    if (status != AQR_OK)
+      return status;
+    if (last)
+    {
+      *end = end_of(r, at->exit);
+      return AQR_OK;
+    }
+    k = at->before;
+  }
+}
+
+/* Draws the arc over a link: from the network to the link on one side, from the link to the network on the other. */
 static aqr_status draw(regions* r, const link* l)
 {
-  aqr_sample last;
   aqr_line line = { .first = r->n_drawn, .type = AQR_LINE_MIN, .partner = { AQR_NONE, AQR_NONE } };
+  aqr_index cell = r->pieces[l->piece].cell;
   aqr_status status = AQR_OK;
-  /* towards the first border, then turned round; the face with each sample is that of the chord towards the link */
-  aqr_index i = l->cell[0];
-  for (; r->cells[i].before != AQR_NONE; i = r->cells[i].before)
-    AQR_TRY(push(r, sample_on(r, r->cells[i].from, r->cells[i].t, r->cells[i].face)));
-  AQR_TRY(last_sample(r, i, &last, &line.ends[0]));
-  AQR_TRY(push(r, last));
+  AQR_TRY(push_way_out(r, cell, false, &line.ends[0]));
   for (size_t a = line.first, z = r->n_drawn - 1; a < z; a++, z--)
   {
     aqr_sample swap = r->drawn[a];
     r->drawn[a] = r->drawn[z];
     r->drawn[z] = swap;
   }
-  AQR_TRY(push(r, sample_on(r, l->edge, 0.5, r->cells[l->cell[1]].face)));
-  for (i = l->cell[1]; r->cells[i].before != AQR_NONE; i = r->cells[i].before)
-    AQR_TRY(push(r, sample_on(r, r->cells[i].from, r->cells[i].t, r->cells[r->cells[i].before].face)));
-  AQR_TRY(last_sample(r, i, &last, &line.ends[1]));
-  AQR_TRY(push(r, last));
+  if (r->pieces[l->piece].is_contact)
+  {
+    AQR_TRY(push(r, l->piece, r->cells[cell].face));
+    line.ends[1] = end_of(r, l->piece);
+  }
+  else
+  {
+    aqr_index other = r->pieces[across(r, l->piece)].cell;
+    AQR_TRY(push(r, l->piece, r->cells[other].face));
+    AQR_TRY(push_way_out(r, other, true, &line.ends[1]));
+  }
   line.count = r->n_drawn - line.first;
   for (size_t k = line.first + 1; k < r->n_drawn; k++)
     r->drawn[k].arc = r->drawn[k - 1].arc + (float)v3_norm(v3_sub(r->drawn[k].p, r->drawn[k - 1].p));
@@ -616,12 +682,13 @@ done:
   return status;
 }
 
-/* Claims the cells that the arc through a link passes; false where another arc of this round has one of them. */
+/* Claims the cells that the arc over a link passes; false where another arc of this round has one of them. */
 static bool claim(const regions* r, const link* l, uint8_t* taken)
 {
+  bool both = !r->pieces[l->piece].is_contact;
   for (unsigned pass = 0; pass < 2; pass++)
-    for (unsigned k = 0; k < 2; k++)
-      for (aqr_index i = l->cell[k]; i != AQR_NONE; i = r->cells[i].before)
+    for (unsigned k = 0; k < 1u + both; k++)
+      for (aqr_index i = r->pieces[k ? across(r, l->piece) : l->piece].cell; i != AQR_NONE; i = r->cells[i].before)
       {
         if (pass == 0 && taken[i])
           return false;
@@ -630,14 +697,14 @@ static bool claim(const regions* r, const link* l, uint8_t* taken)
   return true;
 }
 
-/* Arcs through the shortest links, as many as the regions need and as find room beside each other. Lines are added only
+/* Arcs over the shortest links, as many as the regions need and as find room beside each other. Lines are added only
  * when all are drawn, so that the layouts stay those of the network. */
 static aqr_status draw_arcs(regions* r, size_t* added)
 {
   const aqr_surface* s = r->s;
   link* links = NULL;
-  size_t n = 0, capacity = 0;
-  hub* hubs = AQR_NEW0(r->c, hub, s->n_points);
+  size_t n = 0, capacity = 0, n_hubs = s->n_points + 2 * r->lines->n_samples;
+  hub* hubs = AQR_NEW0(r->c, hub, n_hubs);
   uint8_t *gone = NULL, *taken = AQR_NEW0(r->c, uint8_t, r->n_cells);
   aqr_status status = AQR_OK;
   AQR_REQUIRE(hubs && taken, AQR_OUT_OF_MEMORY);
@@ -648,7 +715,7 @@ static aqr_status draw_arcs(regions* r, size_t* added)
     qsort(links, n, sizeof *links, by_length);
   for (uint32_t i = 0; i < n; i++)
     hang(r, hubs, links, i, false);
-  for (aqr_index v = 0; v < s->n_points; v++)
+  for (aqr_index v = 0; v < n_hubs; v++)
     strip(r, hubs, links, gone, v);
   for (uint32_t i = 0; i < n; i++)
   {
@@ -658,17 +725,18 @@ static aqr_status draw_arcs(regions* r, size_t* added)
       AQR_TRY(draw(r, &links[i]));
     gone[i] = 1;
     hang(r, hubs, links, i, true);
-    strip(r, hubs, links, gone, aqr_from(s, links[i].edge));
-    strip(r, hubs, links, gone, aqr_to(s, links[i].edge));
+    strip(r, hubs, links, gone, r->pieces[links[i].piece].from);
+    strip(r, hubs, links, gone, r->pieces[links[i].piece].to);
   }
-  for (size_t i = 0; i < r->n_arcs; i++)
+  size_t n_arcs = r->n_arcs;
+  for (size_t i = 0; i < n_arcs; i++)
     AQR_TRY(aqr_lines_add(r->c, r->lines, s, &r->arcs[i], r->drawn + r->arcs[i].first));
-  *added = r->n_arcs;
+  *added = n_arcs;
 done:
   AQR_DROP(r->c, links, capacity);
   AQR_DROP(r->c, gone, n);
   AQR_DROP(r->c, taken, r->n_cells);
-  AQR_DROP(r->c, hubs, s->n_points);
+  AQR_DROP(r->c, hubs, n_hubs);
   return status;
 }
 
@@ -683,20 +751,20 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   r.parent = AQR_NEW(c, aqr_index, r.n_items);
   r.euler = AQR_NEW0(c, int32_t, r.n_items);
   r.bordered = AQR_NEW0(c, uint8_t, r.n_items);
-  r.base = AQR_NEW(c, aqr_index, s->n_faces);
-  AQR_REQUIRE(start && r.parent && r.euler && r.bordered && r.base, AQR_OUT_OF_MEMORY);
+  r.slot = AQR_NEW(c, aqr_index, s->n_faces);
+  AQR_REQUIRE(start && r.parent && r.euler && r.bordered && r.slot, AQR_OUT_OF_MEMORY);
   for (size_t i = 0; i < r.n_items; i++)
     r.parent[i] = (aqr_index)i;
   AQR_TRY(unite_cells(&r, start));
   AQR_TRY(count_euler(&r));
   for (aqr_index f = 0; f < s->n_faces; f++)
-    is_bare[f] = lines->head[f] == AQR_NONE && !(r.bordered[find(r.parent, f)] & 1);
+    is_bare[f] = start[3 * f] != AQR_NONE && !(r.bordered[find(r.parent, start[3 * f])] & 1);
   bool any = false;
   for (aqr_index i = 0; cut && i < r.n_items && !any; i++)
     any = r.parent[i] == i && needs_cut(&r, i);
   if (any)
   {
-    AQR_TRY(number_cells(&r));
+    AQR_TRY(list_cells(&r));
     AQR_TRY(search(&r));
     AQR_TRY(draw_arcs(&r, added));
   }
@@ -705,7 +773,9 @@ done:
   AQR_DROP(c, r.parent, r.n_items);
   AQR_DROP(c, r.euler, r.n_items);
   AQR_DROP(c, r.bordered, r.n_items);
-  AQR_DROP(c, r.base, s->n_faces);
+  AQR_DROP(c, r.slot, s->n_faces);
+  AQR_DROP(c, r.slots, r.slot_capacity);
+  AQR_DROP(c, r.pieces, r.piece_capacity);
   AQR_DROP(c, r.cells, r.cell_capacity);
   AQR_DROP(c, r.queue, r.queue_capacity);
   AQR_DROP(c, r.drawn, r.drawn_capacity);
@@ -713,5 +783,6 @@ done:
   AQR_DROP(c, r.at.marks, r.at.capacity);
   AQR_DROP(c, r.at.signature, r.at.signature_capacity);
   AQR_DROP(c, r.at.item, r.at.item_capacity);
+  AQR_DROP(c, r.at.group, r.at.group_capacity);
   return status;
 }

@@ -22,6 +22,8 @@ enum
 static const double longest_edge = 0.025; /* edges longer than this are halved (paper 3.2): half the default spacing */
 static const double corner_angle = 45;    /* a chain turning more sharply has a corner there */
 static const double shortest_feature = 0.02;
+static const double sharpest = 2; /* over the averaging radius: bends sharper than that it cannot tell from noise */
+static const double least_radius = 0.001;
 static const double target_accuracy = 0.02;
 static const double missed_accuracy = 0.05;
 
@@ -480,7 +482,8 @@ static aqr_status run_field(aqr_remesher* r, const aqr_options* o)
 
 static aqr_status run_sizing(aqr_remesher* r, const aqr_options* o)
 {
-  return aqr_sizing_build(&r->context, r->surface, &r->field, o->density_scale, o->largest_spacing, &r->sizing);
+  return aqr_sizing_build(&r->context, r->surface, &r->field, o->density_scale, o->largest_spacing,
+    sharpest / fmax(o->curvature_radius, least_radius), &r->sizing);
 }
 
 static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)

@@ -161,6 +161,8 @@ static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
     return false;
   if (line->closed || (on_border(line->ends[0]) && on_border(line->ends[1])))
     return true;
+  if (line->ends[0] == AQR_END_SELF && line->ends[1] == AQR_END_SELF)
+    return false; /* turns in place */
   return (double)samples[line->count - 1].sigma > least_length;
 }
 

@@ -6,10 +6,11 @@
 enum
 {
   blur_sweeps = 4,
-  solve_steps = 40
+  solve_steps = 60
 };
 
 static const double least_spacing = 1e-6;
+static const double finest = 0.5; /* of the input's local size: lines closer than this would sample its noise */
 static const double least_tolerance = 1e-9, most_tolerance = 0.25;
 
 typedef struct job
@@ -18,7 +19,7 @@ typedef struct job
   const aqr_field* field;
   const double* density;
   const float* from;
-  double tolerance;
+  double tolerance, largest_bend;
   aqr_sizing* sizing;
 } job;
 
@@ -34,7 +35,8 @@ static void measure(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     double c = v3_dot(v3_load(j->field->cross + 3 * v), v3_load(j->field->min_direction + 3 * v));
-    double c2 = fmin(1, c * c), a = fabs(j->field->k_min[v]), b = fabs(j->field->k_max[v]);
+    double c2 = fmin(1, c * c), a = fmin(fabs(j->field->k_min[v]), j->largest_bend);
+    double b = fmin(fabs(j->field->k_max[v]), j->largest_bend);
     j->sizing->bend[2 * v] = (float)(a * c2 + b * (1 - c2));
     j->sizing->bend[2 * v + 1] = (float)(a * (1 - c2) + b * c2);
   }
@@ -80,14 +82,34 @@ static void ask(void* data, size_t begin, size_t end)
   }
 }
 
+static double spacing_at(const aqr_sizing* z, size_t point, unsigned branch, double tolerance)
+{
+  double least = finest * sqrt((double)z->area[point]);
+  double d = fmin(fmax(least, spacing_of((double)z->bend[2 * point + branch], tolerance)), z->largest);
+  return fmax(least_spacing, d * (z->scale ? (double)z->scale[point] : 1));
+}
+
 static void space(void* data, size_t begin, size_t end)
 {
   job* j = data;
-  aqr_sizing* z = j->sizing;
-  for (size_t i = 2 * begin; i < 2 * end; i++)
+  for (size_t v = begin; v < end; v++)
+    for (unsigned i = 0; i < 2; i++)
+      j->sizing->spacing[2 * v + i] = (float)spacing_at(j->sizing, v, i, j->tolerance);
+}
+
+static void add_up_area(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (size_t v = begin; v < end; v++)
   {
-    double d = fmin(spacing_of((double)z->bend[i], j->tolerance), z->largest);
-    z->spacing[i] = (float)fmax(least_spacing, d * (z->scale ? (double)z->scale[i / 2] : 1));
+    double area = 0;
+    aqr_index h = j->s->fan[v], first = h;
+    do
+    {
+      area += v3_norm(aqr_face_cross(j->s, aqr_face_of(h)));
+      h = aqr_next_around(j->s, h);
+    } while (h != AQR_NONE && h != first);
+    j->sizing->area[v] = (float)(area / 6);
   }
 }
 
@@ -97,37 +119,35 @@ aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance
   return aqr_parallel(c, s->n_points, space, &j, 0, 0);
 }
 
-double aqr_sizing_predict(const aqr_surface* s, const aqr_sizing* sizing)
+double aqr_sizing_predict(const aqr_sizing* sizing, double tolerance)
 {
   double points = 0;
-  for (aqr_index f = 0; f < s->n_faces; f++)
-  {
-    double density = 0;
-    for (unsigned i = 0; i < 3; i++)
-    {
-      const float* d = sizing->spacing + 2 * (size_t)s->corner[3 * f + i];
-      density += 1 / ((double)d[0] * (double)d[1]);
-    }
-    points += density / 3 * v3_norm(aqr_face_cross(s, f)) / 2;
-  }
+  for (size_t v = 0; v < sizing->n_points; v++)
+    points += (double)sizing->area[v] / (spacing_at(sizing, v, 0, tolerance) * spacing_at(sizing, v, 1, tolerance));
   return points;
 }
 
+/* The prediction falls as the tolerance grows: halving on a logarithmic scale, sped up by how nearly it is in inverse
+ * proportion. */
 aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points, aqr_sizing* sizing, double* tolerance)
 {
-  double low = log(least_tolerance), high = log(most_tolerance);
+  double low = log(least_tolerance), high = log(most_tolerance), guess = log(1e-4);
   for (int i = 0; i < solve_steps && high - low > 1e-4; i++)
   {
-    double middle = (low + high) / 2;
-    aqr_status status = aqr_sizing_set(c, s, exp(middle), sizing);
-    if (status != AQR_OK)
-      return status;
-    if (aqr_sizing_predict(s, sizing) > points)
-      low = middle;
+    if (!aqr_step(c, 0))
+      return AQR_CANCELLED;
+    double off = log(aqr_sizing_predict(sizing, exp(guess)) / points);
+    if (off > 0)
+      low = guess;
     else
-      high = middle;
+      high = guess;
+    if (fabs(off) < 1e-4)
+      break;
+    guess += off;
+    if (!(guess > low && guess < high))
+      guess = (low + high) / 2;
   }
-  *tolerance = exp((low + high) / 2);
+  *tolerance = exp(guess);
   return aqr_sizing_set(c, s, *tolerance, sizing);
 }
 
@@ -148,7 +168,7 @@ void aqr_sizing_at(const aqr_surface* s, const aqr_field* field, const aqr_sizin
 }
 
 aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_field* field, const double* density,
-  double largest_spacing, aqr_sizing* sizing)
+  double largest_spacing, double largest_bend, aqr_sizing* sizing)
 {
   memset(sizing, 0, sizeof *sizing);
   sizing->n_points = s->n_points;
@@ -157,15 +177,17 @@ aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_fiel
   float* from = AQR_NEW(c, float, 2 * s->n_points);
   sizing->bend = AQR_NEW(c, float, 2 * s->n_points);
   sizing->spacing = AQR_NEW(c, float, 2 * s->n_points);
-  AQR_REQUIRE(from && sizing->bend && sizing->spacing, AQR_OUT_OF_MEMORY);
-  job j = { .s = s, .field = field, .density = density, .from = from, .sizing = sizing };
+  sizing->area = AQR_NEW(c, float, s->n_points);
+  AQR_REQUIRE(from && sizing->bend && sizing->spacing && sizing->area, AQR_OUT_OF_MEMORY);
+  job j = { .s = s, .field = field, .density = density, .from = from, .largest_bend = largest_bend, .sizing = sizing };
   if (density)
   {
     sizing->scale = AQR_NEW(c, float, s->n_points);
     AQR_REQUIRE(sizing->scale, AQR_OUT_OF_MEMORY);
     AQR_TRY(aqr_parallel(c, s->n_points, ask, &j, 0, 0));
   }
-  AQR_TRY(aqr_parallel(c, s->n_points, measure, &j, 0, 0.2));
+  AQR_TRY(aqr_parallel(c, s->n_points, add_up_area, &j, 0, 0.1));
+  AQR_TRY(aqr_parallel(c, s->n_points, measure, &j, 0.1, 0.2));
   for (int i = 0; i < blur_sweeps; i++)
   {
     memcpy(from, sizing->bend, 2 * s->n_points * sizeof *from);
@@ -182,6 +204,7 @@ void aqr_sizing_free(aqr_context* c, aqr_sizing* sizing)
 {
   AQR_DROP(c, sizing->bend, 2 * sizing->n_points);
   AQR_DROP(c, sizing->spacing, 2 * sizing->n_points);
+  AQR_DROP(c, sizing->area, sizing->n_points);
   AQR_DROP(c, sizing->scale, sizing->n_points);
   memset(sizing, 0, sizeof *sizing);
 }

@@ -10,25 +10,27 @@ typedef struct aqr_sizing
 {
   float* bend;    /* 2 per point: absolute normal curvature along the cross's first and second branch */
   float* scale;   /* per point: factor on both spacings asked for by the user's density, or NULL for 1 */
+  float* area;    /* per point: a third of its faces' */
   float* spacing; /* 2 per point: distance of neighbouring crossing lines along the first and the
                      second branch */
   size_t n_points;
   double largest;
 } aqr_sizing;
 
-/* density: NULL or one factor per INPUT point on points per area. */
+/* density: NULL or one factor per INPUT point on points per area. largest_bend: curvatures above it are taken for
+ * noise. */
 aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_field* field, const double* density,
-  double largest_spacing, aqr_sizing* sizing);
+  double largest_spacing, double largest_bend, aqr_sizing* sizing);
 void aqr_sizing_free(aqr_context* c, aqr_sizing* sizing);
 
 /* Fills `spacing` for a tolerance (in scaled units). */
 aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance, aqr_sizing* sizing);
 
-/* Number of crossings that lines at these spacings would have: the integral of 1 / (product of the
+/* Number of crossings that lines at the spacings for a tolerance would have: the integral of 1 / (product of the
  * spacings). */
-double aqr_sizing_predict(const aqr_surface* s, const aqr_sizing* sizing);
+double aqr_sizing_predict(const aqr_sizing* sizing, double tolerance);
 
-/* The tolerance whose prediction is `points`. */
+/* Fills `spacing` for the tolerance whose prediction is `points`. */
 aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points, aqr_sizing* sizing, double* tolerance);
 
 /* Spacing of neighbouring lines along direction d at a face: *along, of the lines that cross one
