@@ -8,7 +8,8 @@ enum
 {
   most_steps = 200000,
   most_closing_faces = 400,
-  in_place = 48 /* steps after which a line that has not got away turns around a point of the field */
+  closing_chords = 8, /* of the line's beginning, that its head may close on */
+  in_place = 48       /* steps after which a line that has not got away turns around a point of the field */
 };
 
 static const double stop_distance = 0.4; /* of the spacing: nearer than this to a line of its family a line ends */
@@ -48,13 +49,16 @@ aqr_status aqr_grow_allowed(
   return status;
 }
 
-/* Makes the tracer's samples from `from` on visible to proximity queries, with arc lengths of the
- * given sign. Their last chord is left out: the tracer may still take its end back. Provisional
- * samples stand beyond the committed ones. */
-static aqr_status enter_provisionally(aqr_context* c, aqr_grower* g, size_t* entered, double* arc, double sign)
+/* Makes the tracer's samples from *entered on visible to proximity queries, with arc lengths from the seed, of the
+ * given sign. Their last chord is left out: the tracer may still take its end back. Provisional samples stand beyond
+ * the committed ones. */
+static aqr_status enter_provisionally(
+  aqr_context* c, aqr_grower* g, vec3 seed, size_t* entered, double* arc, double sign)
 {
   aqr_lines* l = g->lines;
   const aqr_tracer* t = &g->tracer;
+  if (*entered == 0 && t->n_samples)
+    *arc = v3_norm(v3_sub(t->samples[0].p, seed));
   for (; *entered + 2 < t->n_samples; ++*entered)
   {
     size_t n = l->n_samples + g->provisional;
@@ -101,17 +105,23 @@ static aqr_status close_loop(aqr_context* c, aqr_grower* g, aqr_index met, doubl
   if (m + 4 >= t->n_samples)
     return AQR_OK;
   aqr_sample target = t->samples[m];
-  aqr_index before = t->samples[m - 1].face;
-  size_t n = t->n_samples;
+  size_t n = t->n_samples, last = m + closing_chords < n - 4 ? m + closing_chords : n - 4;
   for (int i = 0; i < most_closing_faces; i++)
   {
-    if (t->chart.face == before && t->samples[t->n_samples - 1].edge != target.edge)
+    /* in a face that one of the chords ahead leaves as well, the line goes on over the same edge */
+    size_t at = m;
+    while (at <= last &&
+           !(t->samples[at - 1].face == t->chart.face && t->samples[t->n_samples - 1].edge != t->samples[at].edge))
+      at++;
+    if (at <= last)
     {
+      m = at;
+      target = t->samples[m];
       if (!AQR_RESERVE(c, t->samples, t->capacity, t->n_samples + 1))
         return AQR_OUT_OF_MEMORY;
       memmove(t->samples, t->samples + m, (t->n_samples - m) * sizeof *t->samples);
       t->n_samples -= m;
-      target.face = before; /* as for every last sample: the face of the chord before */
+      target.face = t->chart.face; /* as for every last sample: the face of the chord before */
       t->samples[t->n_samples++] = target;
       *closed = true;
       return AQR_OK;
@@ -147,7 +157,8 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
   const aqr_surface* s = g->surface;
   double step = 0, length = 0, since_query = 0, arc = 0;
   size_t entered = 0;
-  vec3 seen = aqr_tracer_position(t);
+  const vec3 seed = aqr_tracer_position(t);
+  vec3 seen = seed;
   aqr_status status = AQR_OK;
   *end = AQR_END_LENGTH;
   for (int i = 0; i < most_steps && length < longest_line; i++)
@@ -184,7 +195,7 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
     if (since_query < query_every * stop)
       continue;
     since_query = 0;
-    AQR_TRY(enter_provisionally(c, g, &entered, &arc, sign));
+    AQR_TRY(enter_provisionally(c, g, seed, &entered, &arc, sign));
     aqr_near near;
     vec3 d = aqr_tracer_direction(t);
     aqr_probe probe = { t->chart.face, p, d, stop, true, (aqr_index)g->lines->n_lines, sign * length, own_gap * stop };

@@ -90,7 +90,9 @@ aqr_status aqr_pcell_nearest(
       vec3 d = v3_sub(a[1].p, a->p);
       if (fabs(v3_dot(d, probe->direction)) < family_cosine * v3_norm(d))
         continue;
-      if (line == probe->self && fabs((double)a->arc - probe->arc) < probe->gap)
+      /* by the nearer end: in a large face a chord that starts far back ends at the probe */
+      if (line == probe->self &&
+          fmin(fabs((double)a->arc - probe->arc), fabs((double)a[1].arc - probe->arc)) < probe->gap)
         continue;
       double distance = distance_to_segment(probe->p, a->p, a[1].p);
       if (distance < found->distance)

@@ -20,6 +20,7 @@ enum
 static const double seed_distance = 0.6;  /* of the spacing: nearer than this to a line of its family no line begins */
 static const double cover_distance = 0.8; /* of the spacing: a place farther than this from all lines gets a seed */
 static const double least_length = 1.5;   /* spacings: a line shorter than this is not worth its two T-joints */
+static const double least_turning_length = 6; /* the same for a line that meets itself at both ends */
 static const double node_distance =
   0.35; /* of the spacing: a line does not go on over a seam nearer to another's end */
 
@@ -161,9 +162,8 @@ static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
     return false;
   if (line->closed || (on_border(line->ends[0]) && on_border(line->ends[1])))
     return true;
-  if (line->ends[0] == AQR_END_SELF && line->ends[1] == AQR_END_SELF)
-    return false; /* turns in place */
-  return (double)samples[line->count - 1].sigma > least_length;
+  bool turns = line->ends[0] == AQR_END_SELF && line->ends[1] == AQR_END_SELF; /* in place, if it is short */
+  return (double)samples[line->count - 1].sigma > (turns ? least_turning_length : least_length);
 }
 
 static aqr_status cross_seams(sampler* m, aqr_index from);
