@@ -217,6 +217,30 @@ static void store(void* data, size_t begin, size_t end)
   }
 }
 
+/* The crosses as lines are to see them: flattened once, not along every line. */
+static void flatten(void* data, size_t begin, size_t end)
+{
+  const job* j = data;
+  const aqr_surface* s = j->s;
+  for (size_t f = begin; f < end; f++)
+  {
+    vec3 p[3];
+    aqr_complex q[3];
+    for (unsigned i = 0; i < 3; i++)
+      p[i] = aqr_point(s, s->corner[3 * f + i]);
+    aqr_lay_flat(p[0], p[1], p[2], q);
+    for (unsigned i = 0; i < 3; i++)
+    {
+      unsigned k = (i + 1) % 3, h = (i + 2) % 3;
+      size_t v = s->corner[3 * f + i];
+      aqr_complex d =
+        aqr_flatten(v3_load(j->field->normal + 3 * v), v3_load(j->field->cross + 3 * v), v3_sub(p[k], p[i]),
+          v3_sub(p[h], p[i]), cx(q[k].x - q[i].x, q[k].y - q[i].y), cx(q[h].x - q[i].x, q[h].y - q[i].y));
+      j->field->flat[3 * f + i] = cx_narrow(cx_fourth(d));
+    }
+  }
+}
+
 /* Gives points without a direction one, ring by ring from those that have one: each ring only from
  * what was known before it, so that the order within does not matter. Components without any anchor
  * start from the frame of one of their points. */
@@ -345,7 +369,8 @@ aqr_status aqr_cross_field(
     AQR_TRY(aqr_parallel(c, j.n_active, sweep, &j, 0.7 + 0.25 * i / sweeps, 0.7 + 0.25 * (i + 1) / sweeps));
   }
   j.from = j.z[sweeps % 2];
-  AQR_TRY(aqr_parallel(c, s->n_points, store, &j, 0.95, 1));
+  AQR_TRY(aqr_parallel(c, s->n_points, store, &j, 0.95, 0.97));
+  AQR_TRY(aqr_parallel(c, s->n_faces, flatten, &j, 0.97, 1));
 done:
   release(c, &j);
   return status;

@@ -189,9 +189,10 @@ static bool allocate(aqr_context* c, const aqr_surface* s, aqr_field* field)
   field->k_min = AQR_NEW(c, double, n);
   field->k_max = AQR_NEW(c, double, n);
   field->cross = AQR_NEW(c, double, 3 * n);
+  field->flat = AQR_NEW(c, aqr_rotor, 3 * s->n_faces);
   field->point_confidence = AQR_NEW(c, float, n);
   field->face_confidence = AQR_NEW(c, float, s->n_faces);
-  return field->normal && field->min_direction && field->k_min && field->k_max && field->cross &&
+  return field->normal && field->min_direction && field->k_min && field->k_max && field->cross && field->flat &&
          field->point_confidence && field->face_confidence;
 }
 
@@ -239,6 +240,7 @@ void aqr_field_free(aqr_context* c, const aqr_surface* s, aqr_field* field)
   AQR_DROP(c, field->k_min, n);
   AQR_DROP(c, field->k_max, n);
   AQR_DROP(c, field->cross, 3 * n);
+  AQR_DROP(c, field->flat, 3 * s->n_faces);
   AQR_DROP(c, field->point_confidence, n);
   AQR_DROP(c, field->face_confidence, s->n_faces);
 }

@@ -3,6 +3,7 @@
 #ifndef AQR_FIELD_H
 #define AQR_FIELD_H
 
+#include "flatten.h"
 #include "surface.h"
 
 typedef struct aqr_field
@@ -16,6 +17,8 @@ typedef struct aqr_field
   double* cross; /* 3 per point, unit, tangent: one branch of a smooth cross field that equals the
                     principal directions where they are trusted and extends them elsewhere; branches
                     of neighbouring points agree up to quarter turns */
+  aqr_rotor* flat; /* 3 per face: fourth powers of the corners' crosses, flattened into the plane of the face whose
+                      half-edge 0 runs along +x (paper 2) */
   float* point_confidence; /* per point, [0,1] */
   float* face_confidence;  /* per face, [0,1], equation 1 of the paper */
 } aqr_field;

@@ -41,6 +41,22 @@ static inline aqr_complex cx_wide(aqr_rotor a)
   return cx((double)a.x, (double)a.y);
 }
 
+static inline aqr_complex cx_fourth(aqr_complex a)
+{
+  aqr_complex b = cx_mul(a, a);
+  return cx_mul(b, b);
+}
+
+/* A triangle laid into the plane: corner 0 at the origin, half-edge 0 along +x. */
+static inline void aqr_lay_flat(vec3 a, vec3 b, vec3 c, aqr_complex q[3])
+{
+  vec3 ab = v3_sub(b, a), ac = v3_sub(c, a);
+  double base = v3_norm(ab), one_over = base > 0 ? 1 / base : 0;
+  q[0] = cx(0, 0);
+  q[1] = cx(base, 0);
+  q[2] = cx(v3_dot(ab, ac) * one_over, v3_norm(v3_cross(ab, ac)) * one_over);
+}
+
 /* A tangent direction at a corner with normal n as a unit complex number in a plane where the edges
  * leaving the corner lie along to_next and to_prev: measured from the edge nearer to the tangent
  * plane. */

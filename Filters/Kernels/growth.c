@@ -15,9 +15,9 @@ enum
 static const double stop_distance = 0.4; /* of the spacing: nearer than this to a line of its family a line ends */
 static const double longest_line = 20;   /* diagonals */
 static const double longest_step = 0.5;  /* of the smaller spacing */
-static const double shortest_step = 0.02;
-static const double query_every = 0.25; /* of the stop distance */
-static const double own_gap = 3;        /* stop distances along the line itself that are never too near */
+static const double shortest_step = 0.1;
+static const double query_every = 0.6; /* of the stop distance; farther apart along stretched cells */
+static const double own_gap = 3;       /* stop distances along the line itself that are never too near */
 
 aqr_status aqr_grower_init(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
   aqr_lines* lines, aqr_grower* g)
@@ -127,12 +127,9 @@ static aqr_status close_loop(aqr_context* c, aqr_grower* g, aqr_index met, doubl
       return AQR_OK;
     }
     vec3 to = v3_sub(target.p, aqr_tracer_position(t));
-    t->d = (aqr_complex){ v3_dot(to, t->chart.ex), v3_dot(to, t->chart.ey) };
-    double length = hypot(t->d.x, t->d.y);
-    if (!(length > 0))
+    double length = v3_norm(to);
+    if (!aqr_tracer_steer(t, to))
       break;
-    t->d.x /= length;
-    t->d.y /= length;
     /* just out of this face: a short move at a time, aimed anew in each */
     aqr_advance result = AQR_INSIDE;
     aqr_index face = t->chart.face;
@@ -192,7 +189,7 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
     double moved = v3_norm(v3_sub(p, from));
     length += moved;
     since_query += moved;
-    if (since_query < query_every * stop)
+    if (since_query < query_every * stop_distance * fmax(across, sqrt(along * across)))
       continue;
     since_query = 0;
     AQR_TRY(enter_provisionally(c, g, seed, &entered, &arc, sign));

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-static const double family_cosine = 0.70710678118654752; /* of pi / 4 */
+static const double family_cosine2 = 0.5; /* of pi / 4, squared */
 
 aqr_status aqr_pcell_init(aqr_context* c, const aqr_surface* s, aqr_pcell* cell)
 {
@@ -18,89 +18,116 @@ void aqr_pcell_free(aqr_context* c, aqr_pcell* cell)
 {
   if (cell->surface)
     AQR_DROP(c, cell->stamp, cell->surface->n_faces);
-  AQR_DROP(c, cell->faces, cell->capacity);
+  AQR_DROP(c, cell->entries, cell->capacity);
   memset(cell, 0, sizeof *cell);
 }
 
-static double distance_to_segment(vec3 p, vec3 a, vec3 b)
+static double distance2_to_segment(vec3 p, vec3 a, vec3 b)
 {
   vec3 ab = v3_sub(b, a), ap = v3_sub(p, a);
   double n = v3_norm2(ab), t = n > 0 ? fmin(1, fmax(0, v3_dot(ap, ab) / n)) : 0;
-  return v3_norm(v3_madd(ap, -t, ab));
+  return v3_norm2(v3_madd(ap, -t, ab));
 }
 
-static bool take(aqr_context* c, aqr_pcell* cell, aqr_index f)
+/* Room for the cell's next two faces. */
+static bool reserve(aqr_context* c, aqr_pcell* cell)
 {
-  if (!AQR_RESERVE(c, cell->faces, cell->capacity, cell->n_faces + 1))
-    return false;
-  cell->stamp[f] = cell->query;
-  cell->faces[cell->n_faces++] = f;
-  return true;
+  return AQR_RESERVE(c, cell->entries, cell->capacity, cell->n_entries + 3);
 }
 
-/* Starts a new cell that holds the point's own face. */
-static aqr_status begin(aqr_context* c, aqr_pcell* cell, aqr_index face, vec3 p, double radius)
+/* Takes in the face over half-edge h, unless no part of that edge is within the radius. */
+static void cross(aqr_pcell* cell, const aqr_probe* probe, aqr_index h, vec3 from, vec3 to, bool from_in, bool to_in)
 {
-  cell->n_faces = 0;
-  cell->p = p;
-  cell->radius = radius;
+  aqr_index twin = aqr_twin(cell->surface, h);
+  if (twin == AQR_NONE || cell->stamp[aqr_face_of(twin)] == cell->query)
+    return;
+  if (!from_in && !to_in && distance2_to_segment(probe->p, from, to) >= probe->radius * probe->radius)
+    return;
+  cell->stamp[aqr_face_of(twin)] = cell->query;
+  cell->entries[cell->n_entries++] = (aqr_entry){ twin, to_in, from_in };
+}
+
+static bool inside(const aqr_probe* probe, vec3 p)
+{
+  return v3_norm2(v3_sub(p, probe->p)) < probe->radius * probe->radius;
+}
+
+/* Starts a new cell around the point's own face. */
+static aqr_status begin(aqr_context* c, aqr_pcell* cell, const aqr_probe* probe)
+{
+  const aqr_surface* s = cell->surface;
+  cell->n_entries = 0;
   cell->queries++;
   if (++cell->query == 0) /* the counter came round: no stamp of an earlier turn may be taken for a new one */
   {
-    memset(cell->stamp, 0, cell->surface->n_faces * sizeof *cell->stamp);
+    memset(cell->stamp, 0, s->n_faces * sizeof *cell->stamp);
     cell->query = 1;
   }
-  return take(c, cell, face) ? AQR_OK : AQR_OUT_OF_MEMORY;
+  if (!reserve(c, cell))
+    return AQR_OUT_OF_MEMORY;
+  cell->stamp[probe->face] = cell->query;
+  vec3 p[3];
+  bool in[3];
+  for (unsigned i = 0; i < 3; i++)
+  {
+    p[i] = aqr_point(s, s->corner[3 * probe->face + i]);
+    in[i] = inside(probe, p[i]);
+  }
+  for (unsigned i = 0; i < 3; i++)
+    cross(cell, probe, 3 * probe->face + i, p[i], p[(i + 1) % 3], in[i], in[(i + 1) % 3]);
+  return AQR_OK;
 }
 
-/* Takes in the neighbours of the cell's i-th face that share an edge with a vertex inside the
- * radius. */
-static aqr_status extend(aqr_context* c, aqr_pcell* cell, size_t i)
+/* Takes in what lies over the two other edges of the face that an entry leads to. */
+static aqr_status extend(aqr_context* c, aqr_pcell* cell, const aqr_probe* probe, aqr_entry e)
 {
   const aqr_surface* s = cell->surface;
-  aqr_index f = cell->faces[i];
-  bool inside[3];
-  for (unsigned k = 0; k < 3; k++)
-    inside[k] = v3_norm2(v3_sub(aqr_point(s, s->corner[3 * f + k]), cell->p)) < cell->radius * cell->radius;
-  for (unsigned k = 0; k < 3; k++)
-  {
-    aqr_index twin = aqr_twin(s, 3 * f + k);
-    if (twin == AQR_NONE || cell->stamp[aqr_face_of(twin)] == cell->query)
-      continue;
-    bool reaches = inside[k] || inside[(k + 1) % 3];
-    if (!reaches)
-      reaches = v3_norm2(v3_sub(aqr_point(s, aqr_from(s, aqr_prev(twin))), cell->p)) < cell->radius * cell->radius;
-    if (reaches && !take(c, cell, aqr_face_of(twin)))
-      return AQR_OUT_OF_MEMORY;
-  }
+  if (!reserve(c, cell))
+    return AQR_OUT_OF_MEMORY;
+  aqr_index next = aqr_next(e.h), prev = aqr_prev(e.h);
+  vec3 from = aqr_point(s, s->corner[e.h]), to = aqr_point(s, s->corner[next]), apex = aqr_point(s, s->corner[prev]);
+  bool apex_in = inside(probe, apex);
+  cross(cell, probe, next, to, apex, e.to_inside, apex_in);
+  cross(cell, probe, prev, apex, from, apex_in, e.from_inside);
   return AQR_OK;
+}
+
+/* The segments of the direction's family in one face. */
+static void look(const aqr_lines* lines, aqr_index face, const aqr_probe* probe, double* nearest2, aqr_near* found)
+{
+  for (aqr_index k = lines->head[face]; k != AQR_NONE; k = lines->segments[k].next)
+  {
+    aqr_index n = lines->segments[k].sample, line = lines->segments[k].line;
+    const aqr_sample* a = &lines->samples[n];
+    vec3 d = v3_sub(a[1].p, a->p);
+    double along = v3_dot(d, probe->direction);
+    if (along * along < family_cosine2 * v3_norm2(d))
+      continue;
+    /* by the nearer end: in a large face a chord that starts far back ends at the probe */
+    if (line == probe->self &&
+        fmin(fabs((double)a->arc - probe->arc), fabs((double)a[1].arc - probe->arc)) < probe->gap)
+      continue;
+    double distance2 = distance2_to_segment(probe->p, a->p, a[1].p);
+    if (distance2 < *nearest2)
+    {
+      *nearest2 = distance2;
+      *found = (aqr_near){ line, n, 0 };
+    }
+  }
 }
 
 aqr_status aqr_pcell_nearest(
   aqr_context* c, aqr_pcell* cell, const aqr_lines* lines, const aqr_probe* probe, aqr_near* found)
 {
-  *found = (aqr_near){ AQR_NONE, AQR_NONE, probe->radius };
-  aqr_status status = begin(c, cell, probe->face, probe->p, probe->radius);
-  for (size_t i = 0; status == AQR_OK && i < cell->n_faces; i++)
+  double nearest2 = probe->radius * probe->radius;
+  *found = (aqr_near){ AQR_NONE, AQR_NONE, 0 };
+  look(lines, probe->face, probe, &nearest2, found);
+  aqr_status status = begin(c, cell, probe);
+  for (size_t i = 0; status == AQR_OK && i < cell->n_entries && !(probe->any && found->line != AQR_NONE); i++)
   {
-    for (aqr_index k = lines->head[cell->faces[i]]; k != AQR_NONE; k = lines->segments[k].next)
-    {
-      aqr_index n = lines->segments[k].sample, line = lines->segments[k].line;
-      const aqr_sample* a = &lines->samples[n];
-      vec3 d = v3_sub(a[1].p, a->p);
-      if (fabs(v3_dot(d, probe->direction)) < family_cosine * v3_norm(d))
-        continue;
-      /* by the nearer end: in a large face a chord that starts far back ends at the probe */
-      if (line == probe->self &&
-          fmin(fabs((double)a->arc - probe->arc), fabs((double)a[1].arc - probe->arc)) < probe->gap)
-        continue;
-      double distance = distance_to_segment(probe->p, a->p, a[1].p);
-      if (distance < found->distance)
-        *found = (aqr_near){ line, n, distance };
-    }
-    if (probe->any && found->line != AQR_NONE)
-      break;
-    status = extend(c, cell, i);
+    look(lines, aqr_face_of(cell->entries[i].h), probe, &nearest2, found);
+    status = extend(c, cell, probe, cell->entries[i]);
   }
+  found->distance = sqrt(nearest2);
   return status;
 }

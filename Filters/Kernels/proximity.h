@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Proximity queries by p-cells (paper 3.2): the faces connected to a point's own that have a vertex
+/* Proximity queries by p-cells (paper 3.2): the faces connected to a point's own over edges that come
  * within a radius of it, and the segments listed in them. Distances are measured inside the p-cell
  * only, never through space to another sheet. */
 #ifndef AQR_PROXIMITY_H
@@ -7,15 +7,20 @@
 
 #include "lines.h"
 
+/* A face of the cell and the half-edge of it that the cell came in over. */
+typedef struct aqr_entry
+{
+  aqr_index h;
+  uint8_t from_inside, to_inside; /* whether the ends of h lie inside the radius */
+} aqr_entry;
+
 typedef struct aqr_pcell
 {
   const aqr_surface* surface;
   uint32_t* stamp; /* per face: the query that took it in */
   uint32_t query;
-  aqr_index* faces; /* of the cell, nearest the point's face first in edges crossed */
-  size_t n_faces, capacity;
-  vec3 p;
-  double radius;
+  aqr_entry* entries; /* nearest the point's face first in edges crossed */
+  size_t n_entries, capacity;
   size_t queries;
 } aqr_pcell;
 

@@ -15,7 +15,7 @@
 enum
 {
   cookie = 0x41515231,
-  most_attempts = 6, /* at meeting a target number of points */
+  most_attempts = 5, /* at meeting a target number of points */
   most_cuts = 24     /* rounds of arcs that keep the topology */
 };
 
@@ -24,6 +24,7 @@ static const double corner_angle = 45;    /* a chain turning more sharply has a 
 static const double shortest_feature = 0.02;
 static const double sharpest = 2; /* over the averaging radius: bends sharper than that it cannot tell from noise */
 static const double least_radius = 0.001;
+static const double usual_excess = 1.42; /* of points over the prediction: lines end, and what ends costs points */
 static const double target_accuracy = 0.02;
 static const double missed_accuracy = 0.05;
 
@@ -337,26 +338,52 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
   return status;
 }
 
-/* Searches the tolerance that gives the target: the prediction asked for is corrected by what came out, first in
- * proportion, then by the chord through the two attempts nearest to the target on a logarithmic scale. */
+/* One attempt's outcome, held while another is made. */
+typedef struct outcome
+{
+  aqr_lines lines;
+  aqr_polygon_mesh polygons;
+  aqr_report report;
+  double error; /* of the logarithm of the number of points */
+} outcome;
+
+static void forget_outcome(aqr_context* c, outcome* kept)
+{
+  aqr_lines_free(c, &kept->lines);
+  aqr_polygon_mesh_free(c, &kept->polygons);
+  kept->error = INFINITY;
+}
+
+/* Exchanges the outcome kept and the remesher's. */
+static void exchange(aqr_remesher* r, outcome* kept, double error)
+{
+  outcome now = { r->lines, r->polygons, r->report, error };
+  r->lines = kept->lines;
+  r->polygons = kept->polygons;
+  r->report = kept->report;
+  *kept = now;
+}
+
+/* Searches the tolerance that gives the target: the number asked of the prediction is corrected by what came out, in
+ * proportion first, then by the chord through the two attempts nearest to the target on a logarithmic scale. The best
+ * attempt is kept. */
 static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
 {
-  double goal = log((double)o->target_points), ask = goal, x[2] = { 0, 0 }, y[2] = { 0, 0 };
-  double best_error = INFINITY, best_ask = goal;
+  aqr_context* c = &r->context;
+  aqr_status status = AQR_OK;
+  double goal = log((double)o->target_points), ask = goal - log(usual_excess), x[2] = { 0, 0 }, y[2] = { 0, 0 };
+  outcome best = { .error = INFINITY };
   int known = 0;
   for (int i = 0; i < most_attempts; i++)
   {
     double tolerance;
-    aqr_status status = aqr_sizing_solve(&r->context, r->surface, exp(ask), &r->sizing, &tolerance);
-    if (status == AQR_OK)
-      status = attempt(r, o, tolerance);
-    if (status != AQR_OK)
-      return status;
+    AQR_TRY(aqr_sizing_solve(c, r->surface, exp(ask), &r->sizing, &tolerance));
+    AQR_TRY(attempt(r, o, tolerance));
     double made = log(fmax(1, (double)count_vertices(&r->polygons))), error = fabs(made - goal);
-    if (error < best_error)
+    if (error < best.error)
     {
-      best_error = error;
-      best_ask = ask;
+      forget_outcome(c, &best);
+      exchange(r, &best, error);
     }
     if (error < target_accuracy)
       break;
@@ -366,13 +393,12 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
     y[slot] = made;
     double slope = known == 2 && fabs(x[1] - x[0]) > 1e-9 ? (y[1] - y[0]) / (x[1] - x[0]) : 1;
     ask += (goal - made) / fmin(2, fmax(0.25, slope));
-    if (i + 2 == most_attempts)
-      ask = best_ask; /* the last attempt repeats the best */
-    if (i + 2 == most_attempts && best_error >= error)
-      break;
   }
-  r->report.target_missed = best_error > missed_accuracy;
-  return AQR_OK;
+  best.report.target_missed = best.error > missed_accuracy;
+  exchange(r, &best, 0);
+done:
+  forget_outcome(c, &best);
+  return status;
 }
 
 /* ---- options and reuse ---- */

@@ -132,6 +132,8 @@ aqr_status aqr_results_field(aqr_remesher* r)
   aqr_context* c = &r->context;
   const aqr_surface* s = r->surface;
   const aqr_field* field = &r->field;
+  aqr_status status = AQR_OK;
+  aqr_index *point_rank = NULL, *face_rank = NULL;
   aqr_results_free_field(r);
   size_t n = s->n_clean, nf = s->n_faces;
   double *points = AQR_NEW(c, double, 3 * n), *normals = AQR_NEW(c, double, 3 * n);
@@ -142,15 +144,17 @@ aqr_status aqr_results_field(aqr_remesher* r)
   aqr_index *triangles = AQR_NEW(c, aqr_index, 3 * nf), *source = AQR_NEW(c, aqr_index, nf);
   r->field_view = (aqr_field_view){ n, points, origins, normals, min_direction, max_direction, min_curvature,
     max_curvature, point_confidence, nf, triangles, source, confidence };
-  if (!points || !normals || !min_direction || !max_direction || !min_curvature || !max_curvature || !origins ||
-      !point_confidence || !confidence || !triangles || !source)
-  {
-    aqr_results_free_field(r);
-    return AQR_OUT_OF_MEMORY;
-  }
+  AQR_REQUIRE(points && normals && min_direction && max_direction && min_curvature && max_curvature && origins &&
+                point_confidence && confidence && triangles && source,
+    AQR_OUT_OF_MEMORY);
+  point_rank = AQR_NEW(c, aqr_index, n);
+  face_rank = AQR_NEW(c, aqr_index, nf);
+  AQR_REQUIRE(point_rank && face_rank, AQR_OUT_OF_MEMORY);
+  AQR_TRY(aqr_surface_rank_points(c, s, r->n_input_points, point_rank));
+  AQR_TRY(aqr_surface_rank_faces(c, s, face_rank));
   for (size_t v = s->n_points; v-- > 0;) /* backwards, so that the first sector of a point speaks for it */
   {
-    size_t i = s->clean[v];
+    size_t i = point_rank[s->clean[v]];
     vec3 normal = v3_load(field->normal + 3 * v), d = v3_load(field->min_direction + 3 * v);
     unscale(s, aqr_point(s, (aqr_index)v), points + 3 * i);
     v3_store(normals + 3 * i, normal);
@@ -160,12 +164,22 @@ aqr_status aqr_results_field(aqr_remesher* r)
     max_curvature[i] = field->k_max[v] / s->diagonal;
     point_confidence[i] = field->point_confidence[v];
   }
-  memcpy(origins, s->origin, n * sizeof *origins);
-  memcpy(source, s->source, nf * sizeof *source);
-  memcpy(confidence, field->face_confidence, nf * sizeof *confidence);
-  for (size_t i = 0; i < 3 * nf; i++)
-    triangles[i] = s->clean[s->corner[i]];
-  return AQR_OK;
+  for (size_t i = 0; i < n; i++)
+    origins[point_rank[i]] = s->origin[i];
+  for (size_t f = 0; f < nf; f++)
+  {
+    size_t i = face_rank[f];
+    source[i] = s->source[f];
+    confidence[i] = field->face_confidence[f];
+    for (unsigned k = 0; k < 3; k++)
+      triangles[3 * i + k] = point_rank[s->clean[s->corner[3 * f + k]]];
+  }
+done:
+  AQR_DROP(c, point_rank, n);
+  AQR_DROP(c, face_rank, nf);
+  if (status != AQR_OK)
+    aqr_results_free_field(r);
+  return status;
 }
 
 void aqr_results_free_field(aqr_remesher* r)
@@ -203,18 +217,18 @@ aqr_status aqr_results_lines(aqr_remesher* r)
 {
   aqr_context* c = &r->context;
   const aqr_lines* l = &r->lines;
+  aqr_status status = AQR_OK;
   aqr_results_free_lines(r);
   size_t n = l->n_lines, m = l->n_samples;
   int64_t* offsets = AQR_NEW(c, int64_t, n + 1);
   uint8_t *type = AQR_NEW(c, uint8_t, n), *ends = AQR_NEW(c, uint8_t, 2 * n), *isotropic = AQR_NEW(c, uint8_t, m);
   double *points = AQR_NEW(c, double, 3 * m), *curvature = AQR_NEW(c, double, m), *arc = AQR_NEW(c, double, m);
   aqr_index* triangle = AQR_NEW(c, aqr_index, m);
+  aqr_index* face_rank = AQR_NEW(c, aqr_index, r->surface->n_faces);
   r->lines_view = (aqr_lines_view){ n, offsets, type, ends, m, points, curvature, arc, triangle, isotropic };
-  if (!offsets || !type || !ends || !isotropic || !points || !curvature || !arc || !triangle)
-  {
-    aqr_results_free_lines(r);
-    return AQR_OUT_OF_MEMORY;
-  }
+  AQR_REQUIRE(
+    offsets && type && ends && isotropic && points && curvature && arc && triangle && face_rank, AQR_OUT_OF_MEMORY);
+  AQR_TRY(aqr_surface_rank_faces(c, r->surface, face_rank));
   offsets[0] = 0;
   for (size_t i = 0; i < n; i++)
   {
@@ -231,11 +245,15 @@ aqr_status aqr_results_lines(aqr_remesher* r)
       unscale(r->surface, a->p, points + 3 * j);
       curvature[j] = curvature_across(r, a->face, a->p, d);
       arc[j] = (double)a->arc * r->surface->diagonal;
-      triangle[j] = a->face;
+      triangle[j] = face_rank[a->face];
       isotropic[j] = a->isotropic;
     }
   }
-  return AQR_OK;
+done:
+  AQR_DROP(c, face_rank, r->surface->n_faces);
+  if (status != AQR_OK)
+    aqr_results_free_lines(r);
+  return status;
 }
 
 void aqr_results_free_lines(aqr_remesher* r)

@@ -24,12 +24,20 @@ static const double least_turning_length = 6; /* the same for a line that meets 
 static const double node_distance =
   0.35; /* of the spacing: a line does not go on over a seam nearer to another's end */
 
-/* Where a line ends on a chain. */
-typedef struct landing
+/* Where another line crosses a line, or ends on a chain. */
+typedef struct mark
 {
-  double sigma;
+  double sigma; /* position along the line, in spacings */
   aqr_index next;
-} landing;
+} mark;
+
+/* What is known of a line as a parent. */
+typedef struct parent
+{
+  aqr_index newest; /* of its marks */
+  aqr_index n_marks;
+  aqr_index asked; /* one more than the marks it had when it was last asked for seeds; 0 before */
+} parent;
 
 typedef struct sampler
 {
@@ -40,16 +48,23 @@ typedef struct sampler
   const aqr_sampling_options* options;
   aqr_lines* lines;
   aqr_grower grower;
-  landing* landings;
-  size_t n_landings, landing_capacity;
-  aqr_index* landing_of; /* per chain line: its newest landing */
-  size_t n_chains;
-  double* marks; /* positions along the parent, in spacings */
+  mark* marks;
   size_t n_marks, mark_capacity;
-  size_t done; /* parents asked, of this round */
+  parent* parents; /* per line */
+  size_t n_parents, parent_capacity;
+  double* places; /* marks of the parent being asked, in order */
+  size_t n_places, place_capacity;
 } sampler;
 
 /* ---- chains ---- */
+
+static aqr_status add_parent(sampler* m)
+{
+  if (!AQR_RESERVE(m->c, m->parents, m->parent_capacity, m->n_parents + 1))
+    return AQR_OUT_OF_MEMORY;
+  m->parents[m->n_parents++] = (parent){ AQR_NONE, 0, 0 };
+  return AQR_OK;
+}
 
 /* Curvature of a chain at its i-th sample as seen at the scale `w`: of the circle through three of its points. */
 static double chain_curvature(const aqr_sample* a, size_t n, size_t i, double w)
@@ -113,7 +128,7 @@ static aqr_status add_chain(sampler* m, const aqr_chains* chains, const aqr_chai
     line.ends[0] = line.ends[1] = AQR_END_LOOP;
   aqr_status status = aqr_lines_add(m->c, m->lines, s, &line, a);
   AQR_DROP(m->c, a, n);
-  return status;
+  return status == AQR_OK ? add_parent(m) : status;
 }
 
 /* The chain line and the position on it, in spacings, of a point on a boundary or seam edge. */
@@ -135,17 +150,57 @@ static bool on_chain(const sampler* m, const aqr_sample* at, aqr_index* chain, d
   return false;
 }
 
+/* ---- marks ---- */
+
+static aqr_status add_mark(sampler* m, aqr_index line, double sigma)
+{
+  if (!AQR_RESERVE(m->c, m->marks, m->mark_capacity, m->n_marks + 1))
+    return AQR_OUT_OF_MEMORY;
+  m->marks[m->n_marks] = (mark){ sigma, m->parents[line].newest };
+  m->parents[line].newest = (aqr_index)m->n_marks++;
+  m->parents[line].n_marks++;
+  return AQR_OK;
+}
+
+/* Marks the chain that a line ends on. */
 static aqr_status land(sampler* m, const aqr_sample* at)
 {
   aqr_index chain;
   double sigma;
-  if (!on_chain(m, at, &chain, &sigma))
-    return AQR_OK;
-  if (!AQR_RESERVE(m->c, m->landings, m->landing_capacity, m->n_landings + 1))
-    return AQR_OUT_OF_MEMORY;
-  m->landings[m->n_landings] = (landing){ sigma, m->landing_of[chain] };
-  m->landing_of[chain] = (aqr_index)m->n_landings++;
-  return AQR_OK;
+  return on_chain(m, at, &chain, &sigma) ? add_mark(m, chain, sigma) : AQR_OK;
+}
+
+/* How far along the chord from a the chord from b crosses it: the ratio of a's distances from b's line. */
+static double crossing_at(const aqr_sample* a, const aqr_sample* b)
+{
+  vec3 d = v3_sub(a[1].p, a->p), e = v3_sub(b[1].p, b->p);
+  vec3 u = v3_cross(e, v3_sub(a->p, b->p)), v = v3_cross(e, d);
+  double n = v3_norm2(v), t = n > 0 ? fmin(1, fmax(0, -v3_dot(u, v) / n)) : 0.5;
+  return (double)a->sigma + t * (double)(a[1].sigma - a->sigma);
+}
+
+/* Marks a new line and those it crosses. Every segment is listed already, so pairs within the line are met twice. */
+static aqr_status mark_crossings(sampler* m, aqr_index id)
+{
+  const aqr_lines* l = m->lines;
+  const aqr_line* line = &l->lines[id];
+  aqr_status status = AQR_OK;
+  for (size_t i = line->first; i + 1 < line->first + line->count; i++)
+  {
+    const aqr_sample* a = &l->samples[i];
+    for (aqr_index k = l->head[a->face]; k != AQR_NONE; k = l->segments[k].next)
+    {
+      aqr_index other = l->segments[k].line;
+      const aqr_sample* b = &l->samples[l->segments[k].sample];
+      if (l->lines[other].is_chain || b == a || !aqr_chords_cross(m->s, a->face, a, a + 1, b, b + 1))
+        continue;
+      AQR_TRY(add_mark(m, id, crossing_at(a, b)));
+      if (other != id)
+        AQR_TRY(add_mark(m, other, crossing_at(b, a)));
+    }
+  }
+done:
+  return status;
 }
 
 /* ---- growing and committing ---- */
@@ -178,6 +233,10 @@ static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
   *id = (aqr_index)m->lines->n_lines;
   g->line.partner[0] = partner;
   aqr_status status = aqr_lines_add(m->c, m->lines, m->s, &g->line, g->samples);
+  if (status == AQR_OK)
+    status = add_parent(m);
+  if (status == AQR_OK)
+    status = mark_crossings(m, *id);
   for (unsigned i = 0; i < 2 && status == AQR_OK; i++)
     if (on_border(g->line.ends[i]) && !(i == 0 && partner != AQR_NONE))
       status = land(m, &g->samples[i ? g->line.count - 1 : 0]);
@@ -285,37 +344,12 @@ static aqr_status seed_on_chain(sampler* m, aqr_index h, double t, double distan
 
 /* ---- gaps along a parent ---- */
 
-static aqr_status mark(sampler* m, double sigma)
+static aqr_status add_place(sampler* m, double sigma)
 {
-  if (!AQR_RESERVE(m->c, m->marks, m->mark_capacity, m->n_marks + 1))
+  if (!AQR_RESERVE(m->c, m->places, m->place_capacity, m->n_places + 1))
     return AQR_OUT_OF_MEMORY;
-  m->marks[m->n_marks++] = sigma;
+  m->places[m->n_places++] = sigma;
   return AQR_OK;
-}
-
-/* Marks where committed lines cross the parent. */
-static aqr_status mark_crossings(sampler* m, const aqr_line* parent)
-{
-  const aqr_lines* l = m->lines;
-  aqr_status status = AQR_OK;
-  for (size_t i = parent->first; i + 1 < parent->first + parent->count; i++)
-  {
-    const aqr_sample* a = &l->samples[i];
-    vec3 d = v3_sub(a[1].p, a->p);
-    for (aqr_index k = l->head[a->face]; k != AQR_NONE; k = l->segments[k].next)
-    {
-      const aqr_sample* b = &l->samples[l->segments[k].sample];
-      if (l->lines[l->segments[k].line].is_chain || b == a || !aqr_chords_cross(m->s, a->face, a, a + 1, b, b + 1))
-        continue;
-      /* where along a: the ratio of b's distances from a's ends */
-      vec3 e = v3_sub(b[1].p, b->p);
-      vec3 u = v3_cross(e, v3_sub(a->p, b->p)), v = v3_cross(e, d);
-      double n = v3_norm2(v), t = n > 0 ? fmin(1, fmax(0, -v3_dot(u, v) / n)) : 0.5;
-      AQR_TRY(mark(m, (double)a->sigma + t * (double)(a[1].sigma - a->sigma)));
-    }
-  }
-done:
-  return status;
 }
 
 static int by_value(const void* a, const void* b)
@@ -347,57 +381,64 @@ static aqr_status seed_at(sampler* m, aqr_index parent, double sigma)
   return seed_inside(m, a.face, p, v3_unit(v3_cross(n, d)), seed_distance * along);
 }
 
-/* Fills the gaps of one parent with seeds. */
-static aqr_status ask_parent(sampler* m, aqr_index parent)
+/* The places along a parent that bound its gaps, in order: its marks, and its ends where they lie on borders. */
+static aqr_status collect_places(sampler* m, aqr_index id)
 {
-  const aqr_line line = m->lines->lines[parent];
+  const aqr_line line = m->lines->lines[id];
   double end = (double)m->lines->samples[line.first + line.count - 1].sigma;
   aqr_status status = AQR_OK;
-  m->n_marks = 0;
-  if (line.is_chain)
-    for (aqr_index k = m->landing_of[parent]; k != AQR_NONE; k = m->landings[k].next)
-      AQR_TRY(mark(m, m->landings[k].sigma));
-  else
-    AQR_TRY(mark_crossings(m, &line));
-  bool bounded[2] = { line.is_chain || on_border(line.ends[0]), line.is_chain || on_border(line.ends[1]) };
-  if (line.closed && m->n_marks == 0)
-    bounded[0] = bounded[1] = false;
-  if (bounded[0] && !line.closed)
-    AQR_TRY(mark(m, 0));
-  if (bounded[1] && !line.closed)
-    AQR_TRY(mark(m, end));
-  if (m->n_marks)
-    qsort(m->marks, m->n_marks, sizeof *m->marks, by_value);
-  size_t n = m->n_marks;
-  if (line.closed && n)
-    AQR_TRY(mark(m, m->marks[0] + end)); /* around the seam of the loop */
-  if (n == 0)
+  m->n_places = 0;
+  for (aqr_index k = m->parents[id].newest; k != AQR_NONE; k = m->marks[k].next)
+    AQR_TRY(add_place(m, m->marks[k].sigma));
+  if (!line.closed && (line.is_chain || on_border(line.ends[0])))
+    AQR_TRY(add_place(m, 0));
+  if (!line.closed && (line.is_chain || on_border(line.ends[1])))
+    AQR_TRY(add_place(m, end));
+  if (m->n_places)
+    qsort(m->places, m->n_places, sizeof *m->places, by_value);
+  if (line.closed && m->n_places)
+    AQR_TRY(add_place(m, m->places[0] + end)); /* around the seam of the loop */
+done:
+  return status;
+}
+
+/* Fills the gaps of one parent with seeds. Lines only come, so what was refused with the same marks is refused again.
+ */
+static aqr_status ask_parent(sampler* m, aqr_index id)
+{
+  const aqr_line line = m->lines->lines[id];
+  double end = (double)m->lines->samples[line.first + line.count - 1].sigma;
+  aqr_status status = AQR_OK;
+  if (m->parents[id].asked == m->parents[id].n_marks + 1)
+    return AQR_OK;
+  m->parents[id].asked = m->parents[id].n_marks + 1;
+  AQR_TRY(collect_places(m, id));
+  if (m->n_places == 0)
   {
     /* no neighbour yet: whole spacings from the middle outwards */
     for (int i = 0; i <= end / 2 && i < most_seeds_per_line; i++)
       for (int side = i ? -1 : 1; side <= 1; side += 2)
         if (end / 2 + side * i > 0 && end / 2 + side * i < end)
-          AQR_TRY(seed_at(m, parent, end / 2 + side * i));
+          AQR_TRY(seed_at(m, id, end / 2 + side * i));
     return AQR_OK;
   }
-  /* the marks are copied out as they are used: growing lines use the same buffer no more, but new parents do later */
-  double first = m->marks[0], last = m->marks[m->n_marks - 1];
-  for (size_t i = 0; i + 1 < m->n_marks; i++)
+  double first = m->places[0], last = m->places[m->n_places - 1];
+  for (size_t i = 0; i + 1 < m->n_places; i++)
   {
-    double a = m->marks[i], gap = m->marks[i + 1] - a;
+    double a = m->places[i], gap = m->places[i + 1] - a;
     int pieces = (int)fmin(floor(gap + 0.5), most_seeds_per_line);
     for (int k = 1; k < pieces; k++)
     {
       double at = a + gap * k / pieces;
-      AQR_TRY(seed_at(m, parent, at > end ? at - end : at));
+      AQR_TRY(seed_at(m, id, at > end ? at - end : at));
     }
   }
   if (!line.closed)
   {
     for (int k = 1; first - k > 0.25 && k < most_seeds_per_line; k++)
-      AQR_TRY(seed_at(m, parent, first - k));
+      AQR_TRY(seed_at(m, id, first - k));
     for (int k = 1; last + k < end - 0.25 && k < most_seeds_per_line; k++)
-      AQR_TRY(seed_at(m, parent, last + k));
+      AQR_TRY(seed_at(m, id, last + k));
   }
 done:
   return status;
@@ -406,21 +447,21 @@ done:
 /* Asks every line from `first` on for seeds, old ones first, until a whole round brings none. */
 static aqr_status fill_gaps(sampler* m, size_t first)
 {
+  aqr_status status = AQR_OK;
   for (int round = 0; round < most_rounds; round++)
   {
     size_t before = m->lines->n_lines;
     for (size_t i = first; i < m->lines->n_lines; i++)
     {
-      if (i % 16 == 0 && !aqr_step(m->c, 0.9 * (double)i / (double)m->lines->n_lines))
-        return AQR_CANCELLED;
-      aqr_status status = ask_parent(m, (aqr_index)i);
-      if (status != AQR_OK)
-        return status;
+      if (i % 16 == 0)
+        AQR_REQUIRE(aqr_step(m->c, 0.9 * (double)i / (double)m->lines->n_lines), AQR_CANCELLED);
+      AQR_TRY(ask_parent(m, (aqr_index)i));
     }
     if (m->lines->n_lines == before)
       break;
   }
-  return AQR_OK;
+done:
+  return status;
 }
 
 /* ---- seeds where there are no lines ---- */
@@ -555,18 +596,12 @@ done:
 aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
   const aqr_chains* chains, const aqr_sampling_options* options, aqr_lines* lines, aqr_report* report)
 {
-  sampler m = {
-    .c = c, .s = s, .field = field, .sizing = sizing, .options = options, .lines = lines, .n_chains = chains->n_chains
-  };
+  sampler m = { .c = c, .s = s, .field = field, .sizing = sizing, .options = options, .lines = lines };
   aqr_status status = aqr_lines_init(c, s, lines);
   if (status != AQR_OK)
     return status;
   AQR_TRY(aqr_grower_init(c, s, field, sizing, lines, &m.grower));
-  m.landing_of = AQR_NEW(c, aqr_index, m.n_chains);
-  AQR_REQUIRE(m.landing_of, AQR_OUT_OF_MEMORY);
-  for (size_t i = 0; i < m.n_chains; i++)
-    m.landing_of[i] = AQR_NONE;
-  for (size_t i = 0; i < m.n_chains; i++)
+  for (size_t i = 0; i < chains->n_chains; i++)
     AQR_TRY(add_chain(&m, chains, &chains->chains[i]));
   AQR_TRY(fill_gaps(&m, 0));
   AQR_TRY(cover_surface(&m));
@@ -576,9 +611,9 @@ aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_fiel
   report->proximity_queries += m.grower.cell.queries;
 done:
   aqr_grower_free(c, &m.grower);
-  AQR_DROP(c, m.landing_of, m.n_chains);
-  AQR_DROP(c, m.landings, m.landing_capacity);
   AQR_DROP(c, m.marks, m.mark_capacity);
+  AQR_DROP(c, m.parents, m.parent_capacity);
+  AQR_DROP(c, m.places, m.place_capacity);
   if (status != AQR_OK)
     aqr_lines_free(c, lines);
   return status;

@@ -499,6 +499,7 @@ aqr_status aqr_surface_build(
   AQR_TRY(weld_points(&b));
   AQR_TRY(keep_triangles(&b));
   AQR_TRY(place_points(&b));
+  AQR_TRY(aqr_surface_arrange(c, s));
   AQR_TRY(pair_half_edges(&b));
   AQR_TRY(orient(&b));
   AQR_TRY(split_points(&b));

@@ -96,6 +96,14 @@ static inline vec3 aqr_face_cross(const aqr_surface* s, aqr_index f)
 aqr_status aqr_surface_build(
   aqr_context* c, const aqr_input* input, double longest_edge, aqr_surface* s, aqr_report* report);
 
+/* Numbers faces and points along a space-filling curve (surface_order.c), before adjacency is known. */
+aqr_status aqr_surface_arrange(aqr_context* c, aqr_surface* s);
+
+/* The input's order: ranks of the faces by input triangle, and of the cleaned points by input point with the points
+ * added by refinement behind them. */
+aqr_status aqr_surface_rank_faces(aqr_context* c, const aqr_surface* s, aqr_index* rank);
+aqr_status aqr_surface_rank_points(aqr_context* c, const aqr_surface* s, size_t n_input_points, aqr_index* rank);
+
 /* Cuts the surface open along the half-edges marked in is_crease (3 * n_faces, both sides marked): twins become seams
  * and points are split into sectors. */
 aqr_status aqr_surface_cut(aqr_context* c, aqr_surface* s, const uint8_t* is_crease);

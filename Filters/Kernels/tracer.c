@@ -12,7 +12,7 @@ enum
 static const double vertex_band = 1e-9; /* of an edge: nearer to its end counts as passing through the vertex */
 static const double sample_band = 1e-7; /* samples stay this far inside their edge */
 static const double inward = 1e-6;      /* of the way to the middle of the triangle */
-static const double turn_error = 0.02;  /* radians a step may be off by its own estimate */
+static const double turn_error = 0.05;  /* radians a step may be off by its own estimate */
 
 static aqr_complex cx_conj(aqr_complex a)
 {
@@ -34,79 +34,78 @@ static double cx_dot(aqr_complex a, aqr_complex b)
 {
   return a.x * b.x + a.y * b.y;
 }
-static aqr_complex cx_fourth(aqr_complex a)
+/* Lays face f into its own plane. */
+static void lay_out(const aqr_surface* s, aqr_index f, aqr_complex q[3])
 {
-  aqr_complex b = cx_mul(a, a);
-  return cx_mul(b, b);
+  const aqr_index* corner = s->corner + 3 * (size_t)f;
+  aqr_lay_flat(aqr_point(s, corner[0]), aqr_point(s, corner[1]), aqr_point(s, corner[2]), q);
 }
 
-/* Lays face f so that its corner `k` comes to `at` and its canonical +x axis to the unit number
- * `turn`. */
-static void lay(const aqr_tracer* t, aqr_index f, unsigned k, aqr_complex at, aqr_complex turn, aqr_chart* chart)
+static void judge(const aqr_tracer* t, aqr_chart* chart)
 {
-  const aqr_surface* s = t->surface;
-  vec3 p[3], e[3];
-  for (unsigned i = 0; i < 3; i++)
-    p[i] = aqr_point(s, s->corner[3 * f + i]);
-  for (unsigned i = 0; i < 3; i++)
-    e[i] = v3_sub(p[(i + 1) % 3], p[i]);
-  vec3 ex = v3_unit(e[0]);
-  vec3 up = v3_unit(v3_cross(e[0], v3_scale(e[2], -1)));
-  vec3 ey = v3_cross(up, ex);
-  aqr_complex canonical[3] = { cx(0, 0), cx(v3_norm(e[0]), 0), cx(-v3_dot(e[2], ex), -v3_dot(e[2], ey)) };
+  chart->coherent = false;
+  if (!t->flat)
+    return;
+  const aqr_rotor* u = t->flat + 3 * (size_t)chart->face;
+  chart->coherent = u[0].x * u[1].x + u[0].y * u[1].y > 0 && u[1].x * u[2].x + u[1].y * u[2].y > 0 &&
+                    u[2].x * u[0].x + u[2].y * u[0].y > 0;
+}
+
+/* Lays face f, whose own layout is q, so that its corner `k` comes to `at` and its +x axis to the unit number `turn`.
+ */
+static void place(const aqr_tracer* t, aqr_index f, const aqr_complex q[3], unsigned k, aqr_complex at,
+  aqr_complex turn, aqr_chart* chart)
+{
   chart->face = f;
+  chart->turn = turn;
   for (unsigned i = 0; i < 3; i++)
   {
-    aqr_complex d = cx_mul(turn, cx_sub(canonical[i], canonical[k]));
+    aqr_complex d = cx_mul(turn, cx_sub(q[i], q[k]));
     chart->q[i] = cx(at.x + d.x, at.y + d.y);
   }
-  chart->ex = v3_madd(v3_scale(ex, turn.x), -turn.y, ey);
-  chart->ey = v3_madd(v3_scale(ex, turn.y), turn.x, ey);
-  chart->coherent = false;
-  if (!t->cross)
-    return;
-  for (unsigned i = 0; i < 3; i++)
-  {
-    size_t v = s->corner[3 * f + i];
-    unsigned j = (i + 1) % 3, h = (i + 2) % 3;
-    chart->cross[i] = cx_fourth(aqr_flatten(v3_load(t->normal + 3 * v), v3_load(t->cross + 3 * v), e[i],
-      v3_scale(e[h], -1), cx_sub(chart->q[j], chart->q[i]), cx_sub(chart->q[h], chart->q[i])));
-  }
-  chart->coherent = cx_dot(chart->cross[0], chart->cross[1]) > 0 && cx_dot(chart->cross[1], chart->cross[2]) > 0 &&
-                    cx_dot(chart->cross[2], chart->cross[0]) > 0;
+  judge(t, chart);
 }
 
 void aqr_chart_lay(const aqr_tracer* t, aqr_index f, aqr_chart* chart)
 {
-  lay(t, f, 0, cx(0, 0), cx(1, 0), chart);
-}
-
-/* The direction of half-edge i of face f in the face's canonical plane. */
-static aqr_complex canonical_edge(const aqr_surface* s, aqr_index f, unsigned i)
-{
-  vec3 a = aqr_point(s, s->corner[3 * f]), b = aqr_point(s, s->corner[3 * f + 1]),
-       c = aqr_point(s, s->corner[3 * f + 2]);
-  vec3 e0 = v3_sub(b, a), ex = v3_unit(e0);
-  vec3 ey = v3_cross(v3_unit(v3_cross(e0, v3_sub(c, a))), ex);
-  vec3 e = i == 0 ? e0 : i == 1 ? v3_sub(c, b) : v3_sub(a, c);
-  return cx_unit(cx(v3_dot(e, ex), v3_dot(e, ey)));
+  aqr_complex q[3];
+  lay_out(t->surface, f, q);
+  place(t, f, q, 0, cx(0, 0), cx(1, 0), chart);
 }
 
 void aqr_chart_unfold(const aqr_tracer* t, const aqr_chart* from, unsigned k, aqr_chart* to)
 {
   aqr_index twin = aqr_any_twin(t->surface, 3 * from->face + k);
-  aqr_complex a = from->q[k], b = from->q[(k + 1) % 3];
-  aqr_complex along = cx_unit(cx_sub(a, b)); /* the twin runs the other way */
-  aqr_complex turn = cx_mul(along, cx_conj(canonical_edge(t->surface, aqr_face_of(twin), twin % 3)));
-  lay(t, aqr_face_of(twin), twin % 3, b, turn, to);
+  unsigned i = twin % 3, j = (i + 1) % 3, apex = (i + 2) % 3;
+  aqr_complex a = from->q[k], b = from->q[(k + 1) % 3], q[3];
+  to->face = aqr_face_of(twin);
+  lay_out(t->surface, to->face, q);
+  /* the twin runs the other way */
+  to->turn = cx_unit(cx_mul(cx_sub(a, b), cx_conj(cx_sub(q[j], q[i]))));
+  aqr_complex d = cx_mul(to->turn, cx_sub(q[apex], q[i]));
+  to->q[i] = b;
+  to->q[j] = a;
+  to->q[apex] = cx(b.x + d.x, b.y + d.y);
+  judge(t, to);
+}
+
+/* The plane's axes in space. */
+static void axes(const aqr_tracer* t, vec3* ex, vec3* ey)
+{
+  const aqr_surface* s = t->surface;
+  const aqr_index* corner = s->corner + 3 * (size_t)t->chart.face;
+  vec3 a = aqr_point(s, corner[0]), ab = v3_sub(aqr_point(s, corner[1]), a), ac = v3_sub(aqr_point(s, corner[2]), a);
+  vec3 x = v3_unit(ab), y = v3_cross(v3_unit(v3_cross(ab, ac)), x);
+  aqr_complex turn = t->chart.turn;
+  *ex = v3_madd(v3_scale(x, turn.x), -turn.y, y);
+  *ey = v3_madd(v3_scale(x, turn.y), turn.x, y);
 }
 
 void aqr_tracer_init(aqr_tracer* t, const aqr_surface* s, const aqr_field* field)
 {
   memset(t, 0, sizeof *t);
   t->surface = s;
-  t->normal = field ? field->normal : NULL;
-  t->cross = field ? field->cross : NULL;
+  t->flat = field ? field->flat : NULL;
 }
 
 void aqr_tracer_free(aqr_context* c, aqr_tracer* t)
@@ -115,32 +114,55 @@ void aqr_tracer_free(aqr_context* c, aqr_tracer* t)
   t->capacity = t->n_samples = 0;
 }
 
+bool aqr_tracer_steer(aqr_tracer* t, vec3 direction)
+{
+  vec3 ex, ey;
+  axes(t, &ex, &ey);
+  aqr_complex d = cx(v3_dot(direction, ex), v3_dot(direction, ey));
+  t->d = cx_unit(d);
+  return d.x != 0 || d.y != 0;
+}
+
 void aqr_tracer_start(aqr_tracer* t, const aqr_place* at, vec3 direction)
 {
   aqr_chart_lay(t, at->face, &t->chart);
   t->x = cx(0, 0);
   for (unsigned i = 0; i < 3; i++)
     t->x = cx_madd(t->x, at->bary[i], t->chart.q[i]);
-  t->d = cx_unit(cx(v3_dot(direction, t->chart.ex), v3_dot(direction, t->chart.ey)));
+  aqr_tracer_steer(t, direction);
   t->isotropic = false;
   t->n_samples = 0;
 }
 
 vec3 aqr_tracer_direction(const aqr_tracer* t)
 {
-  return v3_madd(v3_scale(t->chart.ex, t->d.x), t->d.y, t->chart.ey);
+  vec3 ex, ey;
+  axes(t, &ex, &ey);
+  return v3_madd(v3_scale(ex, t->d.x), t->d.y, ey);
 }
 
 vec3 aqr_tracer_position(const aqr_tracer* t)
 {
+  vec3 ex, ey;
+  axes(t, &ex, &ey);
   aqr_complex r = cx_sub(t->x, t->chart.q[0]);
   vec3 p = aqr_point(t->surface, t->surface->corner[3 * t->chart.face]);
-  return v3_madd(v3_madd(p, r.x, t->chart.ex), r.y, t->chart.ey);
+  return v3_madd(v3_madd(p, r.x, ex), r.y, ey);
+}
+
+/* Half the angle of a unit number. */
+static aqr_complex half_angle(aqr_complex u)
+{
+  double x = fmax(0, (1 + u.x) / 2), y = fmax(0, (1 - u.x) / 2);
+  return cx(sqrt(x), copysign(sqrt(y), u.y));
 }
 
 /* The cross's branch nearest to d at x: the linear blend of the corners' values (paper 2). */
-static aqr_complex nearest_branch(const aqr_chart* chart, aqr_complex x, aqr_complex d)
+static aqr_complex nearest_branch(const aqr_tracer* t, aqr_complex d)
 {
+  const aqr_chart* chart = &t->chart;
+  const aqr_rotor* cross = t->flat + 3 * (size_t)chart->face;
+  aqr_complex x = t->x;
   double w[3], sum = 0;
   for (unsigned i = 0; i < 3; i++)
   {
@@ -150,17 +172,16 @@ static aqr_complex nearest_branch(const aqr_chart* chart, aqr_complex x, aqr_com
   }
   aqr_complex u = cx(0, 0);
   for (unsigned i = 0; i < 3; i++)
-    u = cx_madd(u, sum > 0 ? w[i] : 1, chart->cross[i]);
-  aqr_complex off = cx_mul(u, cx_conj(cx_fourth(d)));
-  double angle = atan2(off.y, off.x) / 4;
-  return cx_mul(d, cx(cos(angle), sin(angle)));
+    u = cx_madd(u, sum > 0 ? w[i] : 1, cx_wide(cross[i]));
+  aqr_complex off = cx_unit(cx_mul(u, cx_conj(cx_fourth(cx_mul(d, cx_conj(chart->turn))))));
+  return cx_unit(cx_mul(d, half_angle(half_angle(off))));
 }
 
 bool aqr_tracer_align(aqr_tracer* t)
 {
   t->isotropic = !t->chart.coherent;
   if (t->chart.coherent)
-    t->d = nearest_branch(&t->chart, t->x, t->d);
+    t->d = nearest_branch(t, t->d);
   return t->chart.coherent;
 }
 
@@ -257,8 +278,11 @@ static aqr_status pass_vertex(
     status = record(c, t, over, left ? 1 : 0, aqr_face_of(into));
     h = left ? into : aqr_next(into);
   }
-  aqr_complex out = cx_mul(canonical_edge(s, aqr_face_of(exit), exit % 3), cx(cos(exit_angle), sin(exit_angle)));
-  lay(t, aqr_face_of(exit), exit % 3, at, cx_mul(d, cx_conj(out)), &t->chart);
+  aqr_complex q[3];
+  unsigned from = exit % 3;
+  lay_out(s, aqr_face_of(exit), q);
+  aqr_complex out = cx_mul(cx_unit(cx_sub(q[(from + 1) % 3], q[from])), cx(cos(exit_angle), sin(exit_angle)));
+  place(t, aqr_face_of(exit), q, from, at, cx_mul(d, cx_conj(out)), &t->chart);
   t->x = at;
   *result = AQR_INSIDE;
   return status;
@@ -389,7 +413,7 @@ static aqr_status predict(aqr_context* c, aqr_tracer* t, aqr_complex d, double l
   aqr_complex x = t->x;
   aqr_advance result;
   aqr_status status = move(c, t, d, length, false, &result);
-  *direction = t->chart.coherent ? nearest_branch(&t->chart, t->x, d) : d;
+  *direction = t->chart.coherent ? nearest_branch(t, d) : d;
   t->chart = chart;
   t->x = x;
   return status;
@@ -424,7 +448,7 @@ aqr_status aqr_tracer_step(
   AQR_TRY(move(c, t, mean, h, true, result));
   /* arrive with the direction the field has there, so that stops and branches are judged by it */
   if (t->chart.coherent)
-    t->d = nearest_branch(&t->chart, t->x, k4);
+    t->d = nearest_branch(t, k4);
 done:
   return status;
 }

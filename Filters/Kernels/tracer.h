@@ -12,10 +12,9 @@
 typedef struct aqr_chart
 {
   aqr_index face;
-  aqr_complex q[3];     /* its corners */
-  aqr_complex cross[3]; /* fourth powers of the corners' flattened crosses */
-  vec3 ex, ey;          /* the plane's axes in space */
-  bool coherent;        /* the corners' crosses agree well enough to be blended */
+  aqr_complex q[3]; /* its corners */
+  aqr_complex turn; /* where the face's own +x axis, along its half-edge 0, lies */
+  bool coherent;    /* the corners' crosses agree well enough to be blended */
 } aqr_chart;
 
 typedef enum aqr_advance
@@ -28,8 +27,7 @@ typedef enum aqr_advance
 typedef struct aqr_tracer
 {
   const aqr_surface* surface;
-  const double* normal; /* of aqr_field; together with cross NULL for pure geodesics */
-  const double* cross;
+  const aqr_rotor* flat; /* of aqr_field; NULL for pure geodesics */
   aqr_chart chart;
   aqr_complex x, d; /* position and unit direction in the chart */
   bool isotropic;   /* the last step followed the trusted direction, not the field */
@@ -43,6 +41,9 @@ void aqr_tracer_free(aqr_context* c, aqr_tracer* t);
 /* Puts the point at a place with a direction in space, projected into the face. Forgets the
  * samples. */
 void aqr_tracer_start(aqr_tracer* t, const aqr_place* at, vec3 direction);
+
+/* Points the direction along one in space, projected into the face; false where nothing is left of it. */
+bool aqr_tracer_steer(aqr_tracer* t, vec3 direction);
 
 /* Turns the direction to the branch of the cross field nearest to it; false where the field is not
  * coherent. */
