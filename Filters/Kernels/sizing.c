@@ -12,6 +12,9 @@ enum
 static const double least_spacing = 1e-6;
 static const double finest = 0.5; /* of the input's local size: lines closer than this would sample its noise */
 static const double least_tolerance = 1e-9, most_tolerance = 0.25;
+static const double sparse =
+  0.6; /* over the points asked for: a larger tolerance is not taken before the largest spacing gives way */
+static const double flat_bend = 0.1; /* where points are asked for, flat places share them as if so little curved */
 
 typedef struct job
 {
@@ -85,7 +88,8 @@ static void ask(void* data, size_t begin, size_t end)
 static double spacing_at(const aqr_sizing* z, size_t point, unsigned branch, double tolerance)
 {
   double least = finest * sqrt((double)z->area[point]);
-  double d = fmin(fmax(least, spacing_of((double)z->bend[2 * point + branch], tolerance)), z->largest);
+  double bend = fmax(z->least_bend, (double)z->bend[2 * point + branch]);
+  double d = fmin(fmax(least, spacing_of(bend, tolerance)), z->largest * z->stretch);
   return fmax(least_spacing, d * (z->scale ? (double)z->scale[point] : 1));
 }
 
@@ -113,10 +117,17 @@ static void add_up_area(void* data, size_t begin, size_t end)
   }
 }
 
-aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance, aqr_sizing* sizing)
+static aqr_status fill(aqr_context* c, const aqr_surface* s, double tolerance, aqr_sizing* sizing)
 {
   job j = { .s = s, .tolerance = tolerance, .sizing = sizing };
   return aqr_parallel(c, s->n_points, space, &j, 0, 0);
+}
+
+aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance, aqr_sizing* sizing)
+{
+  sizing->least_bend = 0;
+  sizing->stretch = 1;
+  return fill(c, s, tolerance, sizing);
 }
 
 double aqr_sizing_predict(const aqr_sizing* sizing, double tolerance)
@@ -128,10 +139,13 @@ double aqr_sizing_predict(const aqr_sizing* sizing, double tolerance)
 }
 
 /* The prediction falls as the tolerance grows: halving on a logarithmic scale, sped up by how nearly it is in inverse
- * proportion. */
+ * proportion. Fewer points than the largest spacing takes are had by stretching that. */
 aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points, aqr_sizing* sizing, double* tolerance)
 {
   double low = log(least_tolerance), high = log(most_tolerance), guess = log(1e-4);
+  sizing->least_bend = flat_bend;
+  sizing->stretch = 1;
+  sizing->stretch = sqrt(fmax(1, aqr_sizing_predict(sizing, fmin(most_tolerance, sparse / points)) / points));
   for (int i = 0; i < solve_steps && high - low > 1e-4; i++)
   {
     if (!aqr_step(c, 0))
@@ -148,7 +162,7 @@ aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points,
       guess = (low + high) / 2;
   }
   *tolerance = exp(guess);
-  return aqr_sizing_set(c, s, *tolerance, sizing);
+  return fill(c, s, *tolerance, sizing);
 }
 
 void aqr_sizing_at(const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing, aqr_index face, vec3 d,
@@ -173,6 +187,7 @@ aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_fiel
   memset(sizing, 0, sizeof *sizing);
   sizing->n_points = s->n_points;
   sizing->largest = largest_spacing;
+  sizing->stretch = 1;
   aqr_status status = AQR_OK;
   float* from = AQR_NEW(c, float, 2 * s->n_points);
   sizing->bend = AQR_NEW(c, float, 2 * s->n_points);

@@ -15,6 +15,7 @@ typedef struct aqr_sizing
                      second branch */
   size_t n_points;
   double largest;
+  double least_bend, stretch; /* of the curvatures and of `largest`, where a number of points is asked for */
 } aqr_sizing;
 
 /* density: NULL or one factor per INPUT point on points per area. largest_bend: curvatures above it are taken for

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "test.h"
+
+#include "shapes.h"
+
+static vec3 place_on_plane(double u, double v)
+{
+  return v3(u, v, 0);
+}
+
+static double points_over_asked(const shape* m, int64_t asked)
+{
+  aqr_input input = shape_input(m);
+  aqr_options o = aqr_default_options();
+  aqr_remesher* r = NULL;
+  double ratio = 0;
+  o.density = AQR_DENSITY_POINTS;
+  o.target_points = asked;
+  CHECK(aqr_remesher_new(NULL, &r) == AQR_OK);
+  CHECK(aqr_remesher_set_input(r, &input) == AQR_OK);
+  CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+  if (aqr_remesher_mesh(r))
+    ratio = (double)aqr_remesher_mesh(r)->number_of_points / (double)asked;
+  aqr_remesher_free(r);
+  return ratio;
+}
+
+/* Without curvature no tolerance, however small, brings lines nearer together. */
+AQR_TEST(a_flat_sheet_gets_the_points_asked_for)
+{
+  shape m = shape_grid(60, 60, false, false, 0.2, 1, place_on_plane);
+  const int64_t asked[] = { 150, 500, 1800 };
+  for (int i = 0; i < 3; i++)
+    CHECK_BELOW(fabs(points_over_asked(&m, asked[i]) - 1), 0.05);
+  shape_free(&m);
+}
+
+/* The largest spacing alone would give several hundred. */
+AQR_TEST(few_points_are_met_beyond_the_largest_spacing)
+{
+  shape m = shape_torus(30, 2);
+  const int64_t asked[] = { 100, 200, 300 };
+  for (int i = 0; i < 3; i++)
+    CHECK_BELOW(fabs(points_over_asked(&m, asked[i]) - 1), 0.08);
+  shape_free(&m);
+}
+
+AQR_TEST_MAIN
