@@ -17,7 +17,7 @@ static const double longest_line = 20;   /* diagonals */
 static const double longest_step = 0.5;  /* of the smaller spacing */
 static const double shortest_step = 0.1;
 static const double query_every = 0.6; /* of the stop distance; farther apart along stretched cells */
-static const double own_gap = 3;       /* stop distances along the line itself that are never too near */
+static const double loop_start = 3;    /* stop distances from the seed: a line that comes back to there closes */
 
 aqr_status aqr_grower_init(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
   aqr_lines* lines, aqr_grower* g)
@@ -43,7 +43,7 @@ aqr_status aqr_grow_allowed(
   aqr_context* c, aqr_grower* g, aqr_index face, vec3 p, vec3 direction, double distance, bool* allowed)
 {
   aqr_near near;
-  aqr_probe probe = { face, p, direction, distance, true, AQR_NONE, 0, 0 };
+  aqr_probe probe = { face, p, direction, distance, true, AQR_NONE, 0 };
   aqr_status status = aqr_pcell_nearest(c, &g->cell, g->lines, &probe, &near);
   *allowed = near.line == AQR_NONE;
   return status;
@@ -152,13 +152,13 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
 {
   aqr_tracer* t = &g->tracer;
   const aqr_surface* s = g->surface;
-  double step = 0, length = 0, since_query = 0, arc = 0;
+  double step = 0, queried = 0, arc = 0;
   size_t entered = 0;
   const vec3 seed = aqr_tracer_position(t);
   vec3 seen = seed;
   aqr_status status = AQR_OK;
   *end = AQR_END_LENGTH;
-  for (int i = 0; i < most_steps && length < longest_line; i++)
+  for (int i = 0; i < most_steps && t->travelled < longest_line; i++)
   {
     if (i % 256 == 255)
       AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
@@ -167,9 +167,9 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
     double least = fmin(along, across), stop = stop_distance * across;
     if (step == 0)
       step = longest_step * least;
-    vec3 from = aqr_tracer_position(t);
     if (i % in_place == 0)
     {
+      vec3 from = aqr_tracer_position(t);
       if (i && v3_norm(v3_sub(from, seen)) < least / 4)
       {
         *end = AQR_END_SELF;
@@ -185,17 +185,13 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
       *end = edge != AQR_NONE && aqr_is_seam(s, edge) ? AQR_END_FEATURE : AQR_END_BOUNDARY;
       break;
     }
-    vec3 p = aqr_tracer_position(t);
-    double moved = v3_norm(v3_sub(p, from));
-    length += moved;
-    since_query += moved;
-    if (since_query < query_every * stop_distance * fmax(across, sqrt(along * across)))
+    if (t->travelled - queried < query_every * stop_distance * fmax(across, sqrt(along * across)))
       continue;
-    since_query = 0;
+    queried = t->travelled;
     AQR_TRY(enter_provisionally(c, g, seed, &entered, &arc, sign));
     aqr_near near;
-    vec3 d = aqr_tracer_direction(t);
-    aqr_probe probe = { t->chart.face, p, d, stop, true, (aqr_index)g->lines->n_lines, sign * length, own_gap * stop };
+    vec3 p = aqr_tracer_position(t), d = aqr_tracer_direction(t);
+    aqr_probe probe = { t->chart.face, p, d, stop, true, (aqr_index)g->lines->n_lines, sign * t->travelled };
     AQR_TRY(aqr_pcell_nearest(c, &g->cell, g->lines, &probe, &near));
     if (near.line == AQR_NONE)
       continue;
@@ -204,7 +200,7 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
     {
       const aqr_sample* met = &g->lines->samples[near.sample];
       bool closed = false;
-      if ((double)met->arc < own_gap * stop && v3_dot(v3_sub(met[1].p, met->p), d) > 0)
+      if ((double)met->arc < loop_start * stop && v3_dot(v3_sub(met[1].p, met->p), d) > 0)
         AQR_TRY(close_loop(c, g, near.sample, near.distance, &closed));
       if (closed)
         *end = AQR_END_LOOP;

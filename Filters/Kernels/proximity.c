@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+static const double detour =
+  3; /* times its distance: the way back along a line to where the line itself is a neighbour */
 static const double family_cosine2 = 0.5; /* of pi / 4, squared */
 
 aqr_status aqr_pcell_init(aqr_context* c, const aqr_surface* s, aqr_pcell* cell)
@@ -103,11 +105,14 @@ static void look(const aqr_lines* lines, aqr_index face, const aqr_probe* probe,
     double along = v3_dot(d, probe->direction);
     if (along * along < family_cosine2 * v3_norm2(d))
       continue;
-    /* by the nearer end: in a large face a chord that starts far back ends at the probe */
-    if (line == probe->self &&
-        fmin(fabs((double)a->arc - probe->arc), fabs((double)a[1].arc - probe->arc)) < probe->gap)
-      continue;
     double distance2 = distance2_to_segment(probe->p, a->p, a[1].p);
+    if (line == probe->self)
+    {
+      /* by the nearer end: in a large face a chord that starts far back ends at the probe */
+      double back = fmin(fabs((double)a->arc - probe->arc), fabs((double)a[1].arc - probe->arc));
+      if (back * back < detour * detour * distance2)
+        continue;
+    }
     if (distance2 < *nearest2)
     {
       *nearest2 = distance2;

@@ -41,8 +41,9 @@ typedef struct aqr_probe
   vec3 p, direction;
   double radius;
   bool any;        /* the first segment found inside the radius will do */
-  aqr_index self;  /* segments of this line are passed over ... */
-  double arc, gap; /* ... where their arc length is within `gap` of `arc` */
+  aqr_index self; /* segments of this line count only where the line has come back: seen from `arc`, farther along the
+                     line than across the surface */
+  double arc;
 } aqr_probe;
 
 /* The nearest segment of the direction's family (angle below pi/4; paper 4.2) within the radius. */

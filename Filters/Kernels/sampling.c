@@ -215,8 +215,10 @@ static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
 {
   if (line->count < 2)
     return false;
-  if (line->closed || (on_border(line->ends[0]) && on_border(line->ends[1])))
+  if (on_border(line->ends[0]) && on_border(line->ends[1]))
     return true;
+  if (line->closed) /* around something larger than the spacing, not winding about a spike */
+    return samples[line->count - 1].sigma > 1;
   bool turns = line->ends[0] == AQR_END_SELF && line->ends[1] == AQR_END_SELF; /* in place, if it is short */
   return (double)samples[line->count - 1].sigma > (turns ? least_turning_length : least_length);
 }

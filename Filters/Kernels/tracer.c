@@ -132,6 +132,7 @@ void aqr_tracer_start(aqr_tracer* t, const aqr_place* at, vec3 direction)
   aqr_tracer_steer(t, direction);
   t->isotropic = false;
   t->n_samples = 0;
+  t->travelled = 0;
 }
 
 vec3 aqr_tracer_direction(const aqr_tracer* t)
@@ -364,6 +365,8 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
     unsigned j = (k + 1) % 3;
     aqr_complex exit = cx_madd(t->chart.q[k], at, cx_sub(t->chart.q[j], t->chart.q[k]));
     double reach = fmax(0, cx_dot(d, cx_sub(exit, t->x)));
+    if (recording)
+      t->travelled += fmin(reach, length);
     if (reach >= length)
     {
       t->x = cx_madd(t->x, length, d);
