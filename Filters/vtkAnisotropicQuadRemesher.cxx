@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAnisotropicQuadRemesher.h"
 
+#include "AttributeTransfer.h"
+#include "InputSurface.h"
+#include "ToolkitVersion.h"
 #include "aqr.h"
 
+#include "vtkAlgorithmOutput.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
-#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -20,11 +25,12 @@
 #include "vtkSMPTools.h"
 #include "vtkSignedCharArray.h"
 #include "vtkSmartPointer.h"
-#include "vtkTriangleFilter.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <list>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -33,19 +39,6 @@ vtkStandardNewMacro(vtkAnisotropicQuadRemesher);
 
 namespace
 {
-//------------------------------------------------------------------------------
-// Since VTK 9.2 an algorithm asks upstream too whether it should stop, and tells the executive.
-template <typename T>
-auto ShouldAbort(T* algorithm, int) -> decltype(algorithm->CheckAbort())
-{
-  return algorithm->CheckAbort();
-}
-template <typename T>
-bool ShouldAbort(T* algorithm, long)
-{
-  return algorithm->GetAbortExecute() != 0;
-}
-
 //------------------------------------------------------------------------------
 int ReportProgress(void* user, double fraction, const char* stage)
 {
@@ -60,99 +53,6 @@ void ParallelFor(void*, size_t count, size_t grain, void (*body)(void* data, siz
 {
   vtkSMPTools::For(0, static_cast<vtkIdType>(count), static_cast<vtkIdType>(grain),
     [=](vtkIdType begin, vtkIdType end) { body(data, static_cast<size_t>(begin), static_cast<size_t>(end)); });
-}
-
-//------------------------------------------------------------------------------
-// The input as the kernels read it, with what leads back from its triangles to the cells.
-struct Triangles
-{
-  const int64_t* Corners = nullptr;
-  size_t Count = 0;
-  std::vector<vtkIdType> Cells; // input cell of a triangle; empty: triangle i is cell FirstCell + i
-  vtkIdType FirstCell = 0;
-
-  vtkIdType Cell(aqr_index triangle) const
-  {
-    return this->Cells.empty() ? this->FirstCell + static_cast<vtkIdType>(triangle) : this->Cells[triangle];
-  }
-
-  aqr_status Take(vtkPolyData* input)
-  {
-    this->FirstCell = input->GetNumberOfVerts() + input->GetNumberOfLines();
-    vtkCellArray* polys = input->GetPolys();
-    if (input->GetNumberOfStrips() == 0 && polys->IsHomogeneous() == 3)
-    {
-      this->TakeConnectivity(polys);
-      return AQR_OK; // the kernels check the indices
-    }
-    if (!InRange(polys, input->GetNumberOfPoints()) || !InRange(input->GetStrips(), input->GetNumberOfPoints()))
-    {
-      return AQR_INDEX_OUT_OF_RANGE; // vtkTriangleFilter would follow them
-    }
-    vtkNew<vtkIdTypeArray> cells;
-    cells->SetName("cell");
-    cells->SetNumberOfValues(input->GetNumberOfPolys() + input->GetNumberOfStrips());
-    for (vtkIdType i = 0; i < cells->GetNumberOfValues(); ++i)
-    {
-      cells->SetValue(i, this->FirstCell + i);
-    }
-    vtkNew<vtkPolyData> surface;
-    surface->SetPoints(input->GetPoints());
-    surface->SetPolys(polys);
-    surface->SetStrips(input->GetStrips());
-    surface->GetCellData()->AddArray(cells);
-    vtkNew<vtkTriangleFilter> triangulate;
-    triangulate->PassVertsOff();
-    triangulate->PassLinesOff();
-    triangulate->SetInputData(surface);
-    triangulate->Update();
-    vtkPolyData* output = triangulate->GetOutput();
-    this->TakeConnectivity(output->GetPolys());
-    auto* source = vtkIdTypeArray::SafeDownCast(output->GetCellData()->GetArray("cell"));
-    this->Cells.assign(source->GetPointer(0), source->GetPointer(0) + source->GetNumberOfValues());
-    return AQR_OK;
-  }
-
-private:
-  vtkSmartPointer<vtkCellArray> Holder;
-  std::vector<int64_t> Copy;
-
-  static bool InRange(vtkCellArray* cells, vtkIdType points)
-  {
-    double range[2] = { 0.0, 0.0 };
-    if (cells->GetNumberOfConnectivityIds() > 0)
-    {
-      cells->GetConnectivityArray()->GetRange(range);
-    }
-    return range[0] >= 0.0 && range[1] < static_cast<double>(points);
-  }
-
-  void TakeConnectivity(vtkCellArray* polys)
-  {
-    this->Count = static_cast<size_t>(polys->GetNumberOfCells());
-    if (polys->IsStorage64Bit())
-    {
-      this->Holder = polys;
-      this->Corners = reinterpret_cast<const int64_t*>(polys->GetConnectivityArray64()->GetPointer(0));
-      return;
-    }
-    const auto* corners = polys->GetConnectivityArray32()->GetPointer(0);
-    this->Copy.assign(corners, corners + 3 * this->Count);
-    this->Corners = this->Copy.data();
-  }
-};
-
-//------------------------------------------------------------------------------
-// Changes whenever the geometry or the connectivity of a surface does, but not with its attributes.
-vtkMTimeType GeometryTime(vtkPolyData* surface)
-{
-  vtkMTimeType time = std::max(surface->GetPoints()->GetMTime(), surface->GetPoints()->GetData()->GetMTime());
-  for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
-  {
-    time = std::max(
-      { time, cells->GetMTime(), cells->GetConnectivityArray()->GetMTime(), cells->GetOffsetsArray()->GetMTime() });
-  }
-  return time;
 }
 
 //------------------------------------------------------------------------------
@@ -195,72 +95,7 @@ vtkSmartPointer<vtkCellArray> NewCells(const int64_t* offsets, size_t count, con
 }
 
 //------------------------------------------------------------------------------
-// An array whose values may be blended; others (integers, strings) name things and are copied.
-bool IsContinuous(vtkAbstractArray* array)
-{
-  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-}
-
-//------------------------------------------------------------------------------
-void InterpolatePointData(vtkPointData* from, const aqr_origin* origins, size_t count, vtkPointData* to)
-{
-  const vtkIdType points = static_cast<vtkIdType>(count);
-  vtkNew<vtkIdList> corners;
-  corners->SetNumberOfIds(3);
-  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
-  {
-    vtkAbstractArray* source = from->GetAbstractArray(i);
-    const int attribute = from->IsArrayAnAttribute(i);
-    // Normals are computed anew, and copied global ids would no longer be unique.
-    if (attribute == vtkDataSetAttributes::NORMALS || attribute == vtkDataSetAttributes::GLOBALIDS)
-    {
-      continue;
-    }
-    auto target = vtkSmartPointer<vtkAbstractArray>::Take(source->NewInstance());
-    target->SetName(source->GetName());
-    target->SetNumberOfComponents(source->GetNumberOfComponents());
-    target->CopyComponentNames(source);
-    target->SetNumberOfTuples(points);
-    const bool blend = IsContinuous(source);
-    for (vtkIdType p = 0; p < points; ++p)
-    {
-      const aqr_origin& origin = origins[p];
-      const auto nearest = std::max_element(origin.weight, origin.weight + 3) - origin.weight;
-      if (!blend || origin.weight[nearest] >= 1.0F)
-      {
-        target->SetTuple(p, origin.point[nearest], source);
-        continue;
-      }
-      double weights[3];
-      for (int k = 0; k < 3; ++k)
-      {
-        corners->SetId(k, origin.point[k]);
-        weights[k] = origin.weight[k];
-      }
-      target->InterpolateTuple(p, corners, source, weights);
-    }
-    const int index = to->AddArray(target);
-    if (attribute >= 0)
-    {
-      to->SetActiveAttribute(index, attribute);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void CopyCellData(vtkCellData* from, const std::vector<vtkIdType>& sources, vtkCellData* to)
-{
-  const vtkIdType count = static_cast<vtkIdType>(sources.size());
-  to->CopyGlobalIdsOff();
-  to->CopyAllocate(from, count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    to->CopyData(from, sources[static_cast<size_t>(i)], i);
-  }
-}
-
-//------------------------------------------------------------------------------
-std::vector<vtkIdType> SourceCells(const Triangles& triangles, const aqr_index* source, size_t count)
+std::vector<vtkIdType> SourceCells(const InputSurface& triangles, const aqr_index* source, size_t count)
 {
   std::vector<vtkIdType> cells(count);
   std::transform(source, source + count, cells.begin(), [&](aqr_index t) { return triangles.Cell(t); });
@@ -281,13 +116,21 @@ std::string Quoted(const std::string& text)
   }
   return quoted + '"';
 }
-}
 
 //------------------------------------------------------------------------------
-class vtkAnisotropicQuadRemesher::vtkInternals
+// One surface and the stages computed for it.
+struct Slot
 {
-public:
-  ~vtkInternals() { aqr_remesher_free(this->Remesher); }
+  aqr_remesher* Remesher = nullptr;
+  InputSurface Surface;
+  vtkSmartPointer<vtkPoints> Points; // kept, so that no other object can take its address
+  vtkMTimeType Time = 0;
+  SurfaceDigest Digest = {};
+
+  Slot() = default;
+  Slot(const Slot&) = delete;
+  void operator=(const Slot&) = delete;
+  ~Slot() { aqr_remesher_free(this->Remesher); }
 
   aqr_status SetHooks(const aqr_hooks& hooks)
   {
@@ -298,61 +141,86 @@ public:
     }
     return aqr_remesher_new(&hooks, &this->Remesher);
   }
+};
 
-  // Hands the surface to the kernels unless they hold it already.
-  aqr_status SetInput(vtkPolyData* input)
+//------------------------------------------------------------------------------
+// The executive runs a filter for polygonal data once for each block of a composite data set; so many
+// surfaces are kept, since the next update brings all of them again.
+size_t NumberOfSurfaces(vtkAlgorithm* filter)
+{
+  vtkAlgorithmOutput* connection = filter->GetInputConnection(0, 0);
+  vtkDataObject* whole = connection ? connection->GetProducer()->GetOutputDataObject(connection->GetIndex()) : nullptr;
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(whole);
+  if (!blocks)
+  {
+    return 0;
+  }
+  size_t count = 0;
+  auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
+  {
+    ++count;
+  }
+  return count;
+}
+}
+
+//------------------------------------------------------------------------------
+class vtkAnisotropicQuadRemesher::vtkInternals
+{
+public:
+  // Makes current the slot that holds this surface, or else hands the surface to the one longest unused.
+  aqr_status SetInput(vtkPolyData* input, size_t surfaces, const aqr_hooks& hooks)
   {
     const vtkMTimeType time = GeometryTime(input);
-    const vtkIdType first = input->GetNumberOfVerts() + input->GetNumberOfLines();
-    if (this->Points == input->GetPoints() && this->InputTime == time && this->Surface.FirstCell == first)
+    const auto unchanged = [&](const Slot& slot) { return slot.Points == input->GetPoints() && slot.Time == time; };
+    auto found = std::find_if(this->Slots.begin(), this->Slots.end(), unchanged);
+    SurfaceDigest digest = {};
+    if (found == this->Slots.end())
     {
-      return AQR_OK;
+      digest = DigestOf(input);
+      found = std::find_if(
+        this->Slots.begin(), this->Slots.end(), [&](const Slot& slot) { return slot.Points && slot.Digest == digest; });
     }
-    this->Forget();
-    aqr_status status = this->Surface.Take(input);
-    if (status != AQR_OK)
+    const bool known = found != this->Slots.end();
+    if (known)
     {
-      return status;
+      this->Slots.splice(this->Slots.begin(), this->Slots, found);
     }
-    aqr_input view = {};
-    view.number_of_points = static_cast<size_t>(input->GetNumberOfPoints());
-    view.number_of_triangles = this->Surface.Count;
-    view.triangles = this->Surface.Corners;
-    vtkDataArray* data = input->GetPoints()->GetData();
-    vtkSmartPointer<vtkDoubleArray> converted;
-    if (auto* floats = vtkFloatArray::FastDownCast(data))
+    else if (this->Slots.size() < surfaces || this->Slots.empty())
     {
-      view.points_f = floats->GetPointer(0);
-    }
-    else if (auto* doubles = vtkDoubleArray::FastDownCast(data))
-    {
-      view.points_d = doubles->GetPointer(0);
+      this->Slots.emplace_front();
     }
     else
     {
-      converted = vtkSmartPointer<vtkDoubleArray>::New();
-      converted->DeepCopy(data);
-      view.points_d = converted->GetPointer(0);
+      this->Slots.splice(this->Slots.begin(), this->Slots, std::prev(this->Slots.end()));
     }
-    status = aqr_remesher_set_input(this->Remesher, &view);
+    while (this->Slots.size() > surfaces)
+    {
+      this->Slots.pop_back();
+    }
+    Slot& slot = this->Slots.front();
+    aqr_status status = slot.SetHooks(hooks);
+    if (status == AQR_OK && !known)
+    {
+      slot.Points = nullptr;
+      status = slot.Surface.Give(input, slot.Remesher);
+      slot.Digest = digest;
+    }
     if (status == AQR_OK)
     {
-      this->Points = input->GetPoints();
-      this->InputTime = time;
+      slot.Points = input->GetPoints();
+      slot.Time = time;
     }
     return status;
   }
 
-  void Forget()
-  {
-    this->Surface = Triangles();
-    this->Points = nullptr;
-    this->InputTime = 0;
-  }
+  aqr_remesher* Remesher() const { return this->Slots.empty() ? nullptr : this->Slots.front().Remesher; }
+  const InputSurface& Surface() const { return this->Slots.front().Surface; }
 
   std::string Counts() const
   {
-    const aqr_report* report = aqr_remesher_report(this->Remesher);
+    const aqr_report* report = aqr_remesher_report(this->Remesher());
     std::ostringstream text;
     text << "{\"degenerate_triangles\": " << report->degenerate_triangles
          << ", \"duplicate_triangles\": " << report->duplicate_triangles
@@ -366,7 +234,7 @@ public:
          << ", \"proximity_queries\": " << report->proximity_queries << ", \"topology_cuts\": " << report->topology_cuts
          << ", \"coarsened_components\": " << report->coarsened_components
          << ", \"target_missed\": " << report->target_missed << ", \"tolerance\": " << report->tolerance;
-    if (const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher))
+    if (const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher()))
     {
       size_t sides[3] = { 0, 0, 0 };
       for (size_t f = 0; f < mesh->number_of_faces; ++f)
@@ -383,7 +251,7 @@ public:
   std::string Stages() const
   {
     size_t count = 0;
-    const aqr_stage* stages = aqr_remesher_stages(this->Remesher, &count);
+    const aqr_stage* stages = aqr_remesher_stages(this->Remesher(), &count);
     std::ostringstream text;
     text << "[";
     for (size_t i = 0; i < count; ++i)
@@ -399,7 +267,7 @@ public:
   // Sentences about everything that was not as it should be.
   void CollectWarnings(vtkPolyData* input)
   {
-    const aqr_report* report = aqr_remesher_report(this->Remesher);
+    const aqr_report* report = aqr_remesher_report(this->Remesher());
     const std::pair<size_t, const char*> repairs[] = {
       { report->degenerate_triangles, "degenerate triangles dropped" },
       { report->duplicate_triangles, "duplicate triangles dropped" },
@@ -432,7 +300,7 @@ public:
       this->Warnings.push_back(std::to_string(report->coarsened_components) +
                                " components were too small to carry lines at this density and were decimated instead.");
     }
-    const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher);
+    const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher());
     if (report->target_missed && mesh)
     {
       this->Warnings.push_back("The target number of points could not be met within 5 percent: the boundary, the "
@@ -441,10 +309,7 @@ public:
     }
   }
 
-  aqr_remesher* Remesher = nullptr;
-  Triangles Surface;
-  vtkSmartPointer<vtkPoints> Points; // kept, so that no other object can take its address
-  vtkMTimeType InputTime = 0;
+  std::list<Slot> Slots; // the current one first
   std::vector<double> DensityScale;
   std::vector<std::string> Warnings;
 };
@@ -533,14 +398,10 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
   hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
   const auto run = [&]
   {
-    status = internals.SetHooks(hooks);
+    status = internals.SetInput(input, std::max<size_t>(1, NumberOfSurfaces(this)), hooks);
     if (status == AQR_OK)
     {
-      status = internals.SetInput(input);
-    }
-    if (status == AQR_OK)
-    {
-      status = aqr_remesher_run(internals.Remesher, &options);
+      status = aqr_remesher_run(internals.Remesher(), &options);
     }
   };
   // The backend named here is in every VTK since 9.1, whereas the default one may be sequential.
@@ -551,7 +412,7 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
 //------------------------------------------------------------------------------
 void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* output)
 {
-  const aqr_mesh* mesh = aqr_remesher_mesh(this->Internals->Remesher);
+  const aqr_mesh* mesh = aqr_remesher_mesh(this->Internals->Remesher());
   const int precision = input->GetPoints()->GetDataType();
   output->SetPoints(NewPoints(mesh->points, mesh->number_of_points, precision));
   output->SetPolys(NewCells(mesh->offsets, mesh->number_of_faces, mesh->connectivity));
@@ -562,7 +423,7 @@ void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* o
   pointData->AddArray(NewArray<vtkFloatArray>("Normals", mesh->normals, mesh->number_of_points, 3));
   pointData->AddArray(NewArray<vtkSignedCharArray>("PointKind", mesh->point_kind, mesh->number_of_points));
 
-  const auto sources = SourceCells(this->Internals->Surface, mesh->face_source, mesh->number_of_faces);
+  const auto sources = SourceCells(this->Internals->Surface(), mesh->face_source, mesh->number_of_faces);
   CopyCellData(input->GetCellData(), sources, output->GetCellData());
   std::vector<int> sides(mesh->number_of_faces);
   for (size_t f = 0; f < mesh->number_of_faces; ++f)
@@ -576,7 +437,7 @@ void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* o
 //------------------------------------------------------------------------------
 void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* directions, vtkPolyData* confidence)
 {
-  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher);
+  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher());
   const size_t points = field->number_of_points;
   const size_t triangles = field->number_of_triangles;
   std::vector<int64_t> offsets(triangles + 1);
@@ -588,7 +449,7 @@ void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* dire
   surface->SetPoints(NewPoints(field->points, points, input->GetPoints()->GetDataType()));
   surface->SetPolys(NewCells(offsets.data(), triangles, field->triangles));
   InterpolatePointData(input->GetPointData(), field->origins, points, surface->GetPointData());
-  const auto sources = SourceCells(this->Internals->Surface, field->triangle_source, triangles);
+  const auto sources = SourceCells(this->Internals->Surface(), field->triangle_source, triangles);
   CopyCellData(input->GetCellData(), sources, surface->GetCellData());
   surface->GetCellData()->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", sources.data(), triangles));
 
@@ -598,6 +459,7 @@ void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* dire
     vtkPointData* data = directions->GetPointData();
     data->SetNormals(NewArray<vtkFloatArray>("Normals", field->normals, points, 3));
     data->AddArray(NewArray<vtkFloatArray>("MinDirection", field->min_direction, points, 3));
+    data->SetActiveVectors("MinDirection"); // what glyphs take by themselves; SetVectors() would drop the input's
     data->AddArray(NewArray<vtkFloatArray>("MaxDirection", field->max_direction, points, 3));
     data->AddArray(NewArray<vtkDoubleArray>("MinCurvature", field->min_curvature, points));
     data->AddArray(NewArray<vtkDoubleArray>("MaxCurvature", field->max_curvature, points));
@@ -614,8 +476,8 @@ void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* dire
 //------------------------------------------------------------------------------
 void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* output)
 {
-  const aqr_lines_view* lines = aqr_remesher_lines(this->Internals->Remesher);
-  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher);
+  const aqr_lines_view* lines = aqr_remesher_lines(this->Internals->Remesher());
+  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher());
   const size_t points = lines->number_of_points;
   const size_t count = lines->number_of_lines;
   std::vector<int64_t> order(std::max(points, count));
@@ -630,7 +492,7 @@ void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* outp
   std::vector<vtkIdType> cells(points);
   for (size_t p = 0; p < points; ++p)
   {
-    cells[p] = this->Internals->Surface.Cell(field->triangle_source[lines->triangle[p]]);
+    cells[p] = this->Internals->Surface().Cell(field->triangle_source[lines->triangle[p]]);
   }
   pointData->AddArray(NewArray<vtkDoubleArray>("Curvature", lines->curvature, points));
   pointData->AddArray(NewArray<vtkDoubleArray>("ArcLength", lines->arc_length, points));
@@ -670,6 +532,10 @@ int vtkAnisotropicQuadRemesher::RequestData(
 
   if (input->GetNumberOfPoints() == 0 || input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
   {
+    if (NumberOfSurfaces(this) > 0)
+    {
+      return 1; // blocks and pieces of a larger data set may well be empty
+    }
     vtkErrorMacro("The input has no polygons to remesh.");
     this->SetErrorCode(vtkErrorCode::UserError + AQR_EMPTY_INPUT);
     return 1;
@@ -686,7 +552,7 @@ int vtkAnisotropicQuadRemesher::RequestData(
   }
   if (status != AQR_OK)
   {
-    const std::string detail = internals.Remesher ? aqr_remesher_message(internals.Remesher) : "";
+    const std::string detail = internals.Remesher() ? aqr_remesher_message(internals.Remesher()) : "";
     vtkErrorMacro(<< aqr_status_string(status) << (detail.empty() ? "" : ": ") << detail);
     this->SetErrorCode(vtkErrorCode::UserError + status);
     return 1;
@@ -722,7 +588,7 @@ int vtkAnisotropicQuadRemesher::RequestData(
 //------------------------------------------------------------------------------
 std::string vtkAnisotropicQuadRemesher::GetReport() const
 {
-  if (!this->Internals->Remesher)
+  if (!this->Internals->Remesher())
   {
     return "{}";
   }

@@ -2,7 +2,7 @@
 # VTK, either plain (VTK_DIR names it) or the one that comes with ParaView. The components are named,
 # since without them every package that VTK itself was built with is asked for.
 if (AQR_BUILD_PLUGIN OR NOT VTK_DIR)
-  find_package(ParaView QUIET COMPONENTS RemotingCore RemotingServerManager)
+  find_package(ParaView QUIET COMPONENTS RemotingCore RemotingServerManager RemotingViews)
 endif ()
 
 set(components

@@ -86,9 +86,11 @@ int TestAttributes(int, char*[])
     auto* outName = vtkStringArray::SafeDownCast(out->GetAbstractArray("name"));
     auto* outNumber = vtkIntArray::SafeDownCast(out->GetArray("number"));
     CHECK(outLinear && outName && outNumber);
-    CHECK(out->GetVectors() && out->GetTCoords());
+    vtkDataArray* outPosition = out->GetArray("position");
+    CHECK(outPosition && out->GetVectors() && out->GetTCoords());
+    CHECK(port == 1 || out->GetVectors() == outPosition);
     CHECK(out->GetGlobalIds() == nullptr && out->GetArray("ids") == nullptr);
-    if (!outLinear || !outName || !outNumber || !out->GetVectors() || !out->GetTCoords())
+    if (!outLinear || !outName || !outNumber || !outPosition || !out->GetTCoords())
     {
       return EXIT_FAILURE;
     }
@@ -100,7 +102,7 @@ int TestAttributes(int, char*[])
       // The fit moves points off the input, and there the arrays are those of the point below. The
       // field "position" says where that is.
       double below[3];
-      out->GetVectors()->GetTuple(p, below);
+      outPosition->GetTuple(p, below);
       worst = std::max(worst, std::abs(outLinear->GetValue(p) - Linear(below)));
       worst = std::max(worst, std::abs(out->GetTCoords()->GetComponent(p, 0) - below[0] / 4));
       const bool left = outName->GetValue(p) == "left";

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "InputSurface.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTriangleFilter.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace
+{
+//------------------------------------------------------------------------------
+bool InRange(vtkCellArray* cells, vtkIdType points)
+{
+  double range[2] = { 0.0, 0.0 };
+  if (cells->GetNumberOfConnectivityIds() > 0)
+  {
+    cells->GetConnectivityArray()->GetRange(range);
+  }
+  return range[0] >= 0.0 && range[1] < static_cast<double>(points);
+}
+
+//------------------------------------------------------------------------------
+// Two chains of multiply and shift over 64-bit words, with constants of their own.
+void Digest(const void* bytes, size_t count, SurfaceDigest& digest)
+{
+  const auto* next = static_cast<const unsigned char*>(bytes);
+  while (count > 0)
+  {
+    std::uint64_t word = 0;
+    const size_t step = std::min(count, sizeof word);
+    std::memcpy(&word, next, step);
+    digest[0] = (digest[0] ^ word) * 0x9E3779B97F4A7C15ULL;
+    digest[0] ^= digest[0] >> 29;
+    digest[1] = (digest[1] + word) * 0xD6E8FEB86659FD93ULL;
+    digest[1] ^= digest[1] >> 32;
+    next += step;
+    count -= step;
+  }
+}
+
+//------------------------------------------------------------------------------
+void Digest(vtkDataArray* array, SurfaceDigest& digest)
+{
+  const std::int64_t head[2] = { array->GetDataType(), array->GetNumberOfValues() };
+  Digest(head, sizeof head, digest);
+  if (head[1] > 0)
+  {
+    Digest(
+      array->GetVoidPointer(0), static_cast<size_t>(head[1]) * static_cast<size_t>(array->GetDataTypeSize()), digest);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+vtkMTimeType GeometryTime(vtkPolyData* surface)
+{
+  vtkMTimeType time = std::max(surface->GetPoints()->GetMTime(), surface->GetPoints()->GetData()->GetMTime());
+  for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
+  {
+    time = std::max(
+      { time, cells->GetMTime(), cells->GetConnectivityArray()->GetMTime(), cells->GetOffsetsArray()->GetMTime() });
+  }
+  return time;
+}
+
+//------------------------------------------------------------------------------
+SurfaceDigest DigestOf(vtkPolyData* surface)
+{
+  SurfaceDigest digest = { 1, 2 };
+  const std::int64_t first = surface->GetNumberOfVerts() + surface->GetNumberOfLines();
+  Digest(&first, sizeof first, digest);
+  Digest(surface->GetPoints()->GetData(), digest);
+  for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
+  {
+    Digest(cells->GetOffsetsArray(), digest);
+    Digest(cells->GetConnectivityArray(), digest);
+  }
+  return digest;
+}
+
+//------------------------------------------------------------------------------
+aqr_status InputSurface::Give(vtkPolyData* input, aqr_remesher* remesher)
+{
+  this->Cells.clear();
+  this->FirstCell = input->GetNumberOfVerts() + input->GetNumberOfLines();
+  vtkSmartPointer<vtkCellArray> polys = input->GetPolys();
+  if (input->GetNumberOfStrips() != 0 || polys->IsHomogeneous() != 3)
+  {
+    if (!InRange(polys, input->GetNumberOfPoints()) || !InRange(input->GetStrips(), input->GetNumberOfPoints()))
+    {
+      return AQR_INDEX_OUT_OF_RANGE; // vtkTriangleFilter would follow them
+    }
+    vtkNew<vtkIdTypeArray> cells;
+    cells->SetName("cell");
+    cells->SetNumberOfValues(input->GetNumberOfPolys() + input->GetNumberOfStrips());
+    for (vtkIdType i = 0; i < cells->GetNumberOfValues(); ++i)
+    {
+      cells->SetValue(i, this->FirstCell + i);
+    }
+    vtkNew<vtkPolyData> surface;
+    surface->SetPoints(input->GetPoints());
+    surface->SetPolys(polys);
+    surface->SetStrips(input->GetStrips());
+    surface->GetCellData()->AddArray(cells);
+    vtkNew<vtkTriangleFilter> triangulate;
+    triangulate->PassVertsOff();
+    triangulate->PassLinesOff();
+    triangulate->SetInputData(surface);
+    triangulate->Update();
+    polys = triangulate->GetOutput()->GetPolys();
+    auto* source = vtkIdTypeArray::SafeDownCast(triangulate->GetOutput()->GetCellData()->GetArray("cell"));
+    this->Cells.assign(source->GetPointer(0), source->GetPointer(0) + source->GetNumberOfValues());
+  }
+
+  aqr_input view = {};
+  view.number_of_points = static_cast<size_t>(input->GetNumberOfPoints());
+  view.number_of_triangles = static_cast<size_t>(polys->GetNumberOfCells());
+  std::vector<int64_t> corners;
+  if (polys->IsStorage64Bit())
+  {
+    view.triangles = reinterpret_cast<const int64_t*>(polys->GetConnectivityArray64()->GetPointer(0));
+  }
+  else
+  {
+    const auto* narrow = polys->GetConnectivityArray32()->GetPointer(0);
+    corners.assign(narrow, narrow + 3 * view.number_of_triangles);
+    view.triangles = corners.data();
+  }
+  vtkDataArray* data = input->GetPoints()->GetData();
+  vtkNew<vtkDoubleArray> converted;
+  if (auto* floats = vtkFloatArray::FastDownCast(data))
+  {
+    view.points_f = floats->GetPointer(0);
+  }
+  else if (auto* doubles = vtkDoubleArray::FastDownCast(data))
+  {
+    view.points_d = doubles->GetPointer(0);
+  }
+  else
+  {
+    converted->DeepCopy(data);
+    view.points_d = converted->GetPointer(0);
+  }
+  return aqr_remesher_set_input(remesher, &view);
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The input as the kernels read it, and what tells one input from another.
+#ifndef InputSurface_h
+#define InputSurface_h
+
+#include "aqr.h"
+#include "vtkType.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+class vtkPolyData;
+
+// Changes whenever the geometry or the connectivity of a surface may have, but not with its attributes.
+vtkMTimeType GeometryTime(vtkPolyData* surface);
+
+// Digest of points and polygons. A reader that gives the same surface at the next time step, or a block
+// whose turn comes again, gives new arrays with the digest of the old.
+using SurfaceDigest = std::array<std::uint64_t, 2>;
+SurfaceDigest DigestOf(vtkPolyData* surface);
+
+// Leads from triangles of the kernels back to cells of the input.
+class InputSurface
+{
+public:
+  vtkIdType Cell(aqr_index triangle) const
+  {
+    return this->Cells.empty() ? this->FirstCell + static_cast<vtkIdType>(triangle) : this->Cells[triangle];
+  }
+
+  // Hands points and triangles to the remesher.
+  aqr_status Give(vtkPolyData* input, aqr_remesher* remesher);
+
+private:
+  std::vector<vtkIdType> Cells; // input cell of a triangle; empty: triangle i is cell FirstCell + i
+  vtkIdType FirstCell = 0;
+};
+
+#endif
