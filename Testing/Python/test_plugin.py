@@ -174,7 +174,7 @@ class Plugin(unittest.TestCase):
         observer = plain.AddObserver("ProgressEvent", cancel)
         remesh.UpdatePipeline()
         self.assertGreater(len(cancelled), 0)
-        self.assertLess(time.monotonic() - cancelled[0], 2.0)
+        self.assertLess(time.monotonic() - cancelled[0], 5.0)
         self.assertEqual(remesh[0].GetDataInformation().GetNumberOfCells(), 0)
         plain.RemoveObserver(observer)
         plain.SetAbortExecute(0)
