@@ -35,7 +35,7 @@ void aqr_release(aqr_context* c, void* p, size_t count, size_t size);
  * stays valid). */
 bool aqr_reserve(aqr_context* c, void** p, size_t* capacity, size_t need, size_t size);
 #define AQR_RESERVE(c, p, capacity, need)                                                          \
-  aqr_reserve(c, (void**)&(p), &(capacity), need, sizeof *(p))
+  (((need) <= (capacity) && (p)) || aqr_reserve(c, (void**)&(p), &(capacity), need, sizeof *(p)))
 
 /* Reports that `fraction` of the running stage is done; false when the caller wants to stop.
  * Cheap enough for every few thousand steps of a loop. Only on the thread that called run. */

@@ -190,7 +190,8 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
     queried = t->travelled;
     AQR_TRY(enter_provisionally(c, g, seed, &entered, &arc, sign));
     aqr_near near;
-    vec3 p = aqr_tracer_position(t), d = aqr_tracer_direction(t);
+    vec3 p, d;
+    aqr_tracer_where(t, &p, &d);
     aqr_probe probe = { t->chart.face, p, d, stop, true, (aqr_index)g->lines->n_lines, sign * t->travelled };
     AQR_TRY(aqr_pcell_nearest(c, &g->cell, g->lines, &probe, &near));
     if (near.line == AQR_NONE)

@@ -135,20 +135,28 @@ void aqr_tracer_start(aqr_tracer* t, const aqr_place* at, vec3 direction)
   t->travelled = 0;
 }
 
-vec3 aqr_tracer_direction(const aqr_tracer* t)
-{
-  vec3 ex, ey;
-  axes(t, &ex, &ey);
-  return v3_madd(v3_scale(ex, t->d.x), t->d.y, ey);
-}
-
-vec3 aqr_tracer_position(const aqr_tracer* t)
+void aqr_tracer_where(const aqr_tracer* t, vec3* position, vec3* direction)
 {
   vec3 ex, ey;
   axes(t, &ex, &ey);
   aqr_complex r = cx_sub(t->x, t->chart.q[0]);
   vec3 p = aqr_point(t->surface, t->surface->corner[3 * t->chart.face]);
-  return v3_madd(v3_madd(p, r.x, ex), r.y, ey);
+  *position = v3_madd(v3_madd(p, r.x, ex), r.y, ey);
+  *direction = v3_madd(v3_scale(ex, t->d.x), t->d.y, ey);
+}
+
+vec3 aqr_tracer_position(const aqr_tracer* t)
+{
+  vec3 position, direction;
+  aqr_tracer_where(t, &position, &direction);
+  return position;
+}
+
+vec3 aqr_tracer_direction(const aqr_tracer* t)
+{
+  vec3 position, direction;
+  aqr_tracer_where(t, &position, &direction);
+  return direction;
 }
 
 /* Half the angle of a unit number. */

@@ -59,6 +59,7 @@ aqr_status aqr_tracer_straight(aqr_context* c, aqr_tracer* t, double length, aqr
 aqr_status aqr_tracer_step(
   aqr_context* c, aqr_tracer* t, double* step, double shortest, double longest, aqr_advance* result);
 
+void aqr_tracer_where(const aqr_tracer* t, vec3* position, vec3* direction);
 vec3 aqr_tracer_position(const aqr_tracer* t);
 vec3 aqr_tracer_direction(const aqr_tracer* t);
 
