@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "context.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum
 {
   grain = 1024,
-  block = 32 * grain /* elements between two looks at the progress hook */
+  first_block = 16 * grain, /* elements before the first look at the progress hook */
+  most_growth = 4           /* of a block over the one before */
 };
+
+static const double block_seconds = 0.02; /* between two looks: short for a cancel, long for threads to be worth it */
 
 static void* default_reallocate(void* user, void* old, size_t old_bytes, size_t bytes)
 {
@@ -90,6 +95,12 @@ bool aqr_step(aqr_context* c, double fraction)
   return c->hooks.progress(c->hooks.user, f, c->stage ? c->stage : "") != 0;
 }
 
+double aqr_seconds(void)
+{
+  struct timespec t;
+  return timespec_get(&t, TIME_UTC) ? (double)t.tv_sec + 1e-9 * (double)t.tv_nsec : 0;
+}
+
 struct shifted
 {
   void (*body)(void*, size_t, size_t);
@@ -103,23 +114,24 @@ static void run_shifted(void* data, size_t begin, size_t end)
   s->body(s->data, s->first + begin, s->first + end);
 }
 
-aqr_status aqr_parallel(aqr_context* c,
-  size_t count,
-  void (*body)(void*, size_t, size_t),
-  void* data,
-  double from,
-  double to)
+aqr_status aqr_parallel(
+  aqr_context* c, size_t count, void (*body)(void*, size_t, size_t), void* data, double from, double to)
 {
-  for (size_t first = 0; first < count; first += block)
+  size_t block = first_block;
+  for (size_t first = 0; first < count;)
   {
     if (!aqr_step(c, from + (to - from) * (double)first / (double)count))
       return AQR_CANCELLED;
     size_t n = count - first < block ? count - first : block;
     struct shifted s = { body, data, first };
+    double began = aqr_seconds();
     if (c->hooks.parallel_for)
       c->hooks.parallel_for(c->hooks.user, n, grain, run_shifted, &s);
     else
       run_shifted(&s, 0, n);
+    first += n;
+    double ratio = block_seconds / fmax(aqr_seconds() - began, block_seconds / most_growth);
+    block = (size_t)fmax(grain, (double)n * ratio);
   }
   return AQR_OK;
 }

@@ -41,6 +41,9 @@ bool aqr_reserve(aqr_context* c, void** p, size_t* capacity, size_t need, size_t
  * Cheap enough for every few thousand steps of a loop. Only on the thread that called run. */
 bool aqr_step(aqr_context* c, double fraction);
 
+/* Of a clock that goes on; only for figures and for how often to look at the hooks, never for results. */
+double aqr_seconds(void);
+
 /* Runs body over [0, count) through the parallel_for hook, in blocks between which progress moves
  * from `from` to `to` of the stage and cancellation is heard. */
 aqr_status aqr_parallel(aqr_context* c,

@@ -10,7 +10,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 enum
 {
@@ -156,12 +155,6 @@ void aqr_remesher_set_hooks(aqr_remesher* remesher, const aqr_hooks* hooks)
 
 /* ---- stages ---- */
 
-static double now(void)
-{
-  struct timespec t;
-  return timespec_get(&t, TIME_UTC) ? (double)t.tv_sec + 1e-9 * (double)t.tv_nsec : 0;
-}
-
 static double begin_stage(aqr_remesher* r, int stage)
 {
   aqr_context* c = &r->context;
@@ -169,13 +162,13 @@ static double begin_stage(aqr_remesher* r, int stage)
   c->begin = stage ? stage_ends[stage - 1] : 0;
   c->end = stage_ends[stage];
   c->peak_bytes = c->bytes;
-  return now();
+  return aqr_seconds();
 }
 
 static void end_stage(aqr_remesher* r, int stage, double began)
 {
   aqr_stage* s = &r->stages[stage];
-  s->seconds += now() - began;
+  s->seconds += aqr_seconds() - began;
   s->end_bytes = r->context.bytes;
   if (r->context.peak_bytes > s->peak_bytes)
     s->peak_bytes = r->context.peak_bytes;
