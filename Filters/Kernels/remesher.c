@@ -14,7 +14,8 @@
 enum
 {
   cookie = 0x41515231,
-  most_attempts = 5, /* at meeting a target number of points */
+  most_attempts = 9, /* at meeting a target number of points ... */
+  fine_attempts = 4, /* ... of which the first ask for better than what counts as met */
   most_cuts = 24     /* rounds of arcs that keep the topology */
 };
 
@@ -25,7 +26,7 @@ static const double sharpest = 2; /* over the averaging radius: bends sharper th
 static const double least_radius = 0.001;
 static const double usual_excess = 1.45; /* of points over the prediction: lines end, and what ends costs points */
 static const double target_accuracy = 0.03;
-static const double missed_accuracy = 0.05;
+static const double missed_accuracy = 0.045; /* of the logarithm: within 5 % */
 
 static const char* const stage_names[AQR_STAGES] = { "surface", "features", "curvature", "direction field", "spacing",
   "lines", "network", "faces", "fit", "results" };
@@ -378,7 +379,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
       forget_outcome(c, &best);
       exchange(r, &best, error);
     }
-    if (error < target_accuracy)
+    if (error < (i < fine_attempts ? target_accuracy : missed_accuracy))
       break;
     /* keep the two attempts nearest to the goal */
     int slot = known < 2 ? known++ : fabs(y[0] - goal) > fabs(y[1] - goal) ? 0 : 1;
