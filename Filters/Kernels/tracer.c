@@ -11,6 +11,7 @@ enum
 
 static const double vertex_band = 1e-9; /* of an edge: nearer to its end counts as passing through the vertex */
 static const double sample_band = 1e-7; /* samples stay this far inside their edge */
+static const double parallel = 1e-9;    /* sine of the angle between a ray and an edge that it runs along */
 static const double inward = 1e-6;      /* of the way to the middle of the triangle */
 static const double turn_error = 0.05;  /* radians a step may be off by its own estimate */
 
@@ -254,9 +255,9 @@ static aqr_status record(aqr_context* c, aqr_tracer* t, aqr_index h, double at, 
 
 /* Passes exactly through corner k of the chart's face (paper 3.1, case 3): the samples go around
  * the vertex on the shorter side, and the new face is turned so that the direction keeps its
- * coordinates. */
+ * coordinates. *vertex tells which corner of the new face the point stands on. */
 static aqr_status pass_vertex(
-  aqr_context* c, aqr_tracer* t, unsigned k, aqr_complex d, bool recording, aqr_advance* result)
+  aqr_context* c, aqr_tracer* t, unsigned k, aqr_complex d, bool recording, aqr_advance* result, unsigned* vertex)
 {
   const aqr_surface* s = t->surface;
   aqr_index arrival = 3 * t->chart.face + k, exit;
@@ -293,6 +294,7 @@ static aqr_status pass_vertex(
   aqr_complex out = cx_mul(cx_unit(cx_sub(q[(from + 1) % 3], q[from])), cx(cos(exit_angle), sin(exit_angle)));
   place(t, aqr_face_of(exit), q, from, at, cx_mul(d, cx_conj(out)), &t->chart);
   t->x = at;
+  *vertex = from;
   *result = AQR_INSIDE;
   return status;
 }
@@ -324,6 +326,17 @@ static unsigned exit_edge(const aqr_chart* chart, aqr_complex x, aqr_complex d, 
   return best;
 }
 
+/* A ray from a corner into the face leaves over the edge opposite. Asked by its sides it might, along one of the
+ * corner's own edges, pass the same vertex again. */
+static unsigned opposite_edge(const aqr_chart* chart, unsigned corner, aqr_complex d, double* at)
+{
+  unsigned k = (corner + 1) % 3;
+  double a = cx_cross(d, cx_sub(chart->q[k], chart->q[corner]));
+  double b = cx_cross(d, cx_sub(chart->q[(k + 1) % 3], chart->q[corner]));
+  *at = b > a ? fmin(1, fmax(0, a / (a - b))) : 0.5;
+  return k;
+}
+
 static aqr_complex middle(const aqr_chart* chart)
 {
   const aqr_complex* q = chart->q;
@@ -352,11 +365,12 @@ static unsigned foremost_edge(const aqr_chart* chart, aqr_complex d)
 static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double length, bool recording, aqr_advance* result)
 {
   const aqr_surface* s = t->surface;
+  unsigned vertex = 3; /* corner that the point stands on, just passed; 3: none */
   *result = AQR_INSIDE;
   for (int i = 0; i < most_faces; i++)
   {
     double side[3], at;
-    unsigned k = exit_edge(&t->chart, t->x, d, side);
+    unsigned k = vertex < 3 ? opposite_edge(&t->chart, vertex, d, &at) : exit_edge(&t->chart, t->x, d, side);
     if (k == 3) /* beside its triangle by rounding: a little towards the middle it sees an edge again */
     {
       aqr_complex to = cx_sub(middle(&t->chart), t->x);
@@ -368,11 +382,20 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
       k = foremost_edge(&t->chart, d);
       at = 0.5;
     }
-    else
+    else if (vertex == 3)
       at = side[k] / (side[k] - side[(k + 1) % 3]);
+    vertex = 3;
     unsigned j = (k + 1) % 3;
     aqr_complex exit = cx_madd(t->chart.q[k], at, cx_sub(t->chart.q[j], t->chart.q[k]));
-    double reach = fmax(0, cx_dot(d, cx_sub(exit, t->x)));
+    double reach = cx_dot(d, cx_sub(exit, t->x));
+    if (reach < 0 && cx_cross(d, cx_unit(cx_sub(t->chart.q[j], t->chart.q[k]))) < parallel)
+    {
+      /* along the very edge it stands on, on its outer side by rounding: over it where it stands */
+      aqr_complex e = cx_sub(t->chart.q[j], t->chart.q[k]);
+      at = fmin(1, fmax(0, cx_dot(cx_sub(t->x, t->chart.q[k]), e) / cx_dot(e, e)));
+      exit = t->x;
+    }
+    reach = fmax(0, reach);
     if (recording)
       t->travelled += fmin(reach, length);
     if (reach >= length)
@@ -385,7 +408,7 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
     t->x = exit;
     if (at < vertex_band || at > 1 - vertex_band)
     {
-      aqr_status status = pass_vertex(c, t, at < vertex_band ? k : j, d, recording, result);
+      aqr_status status = pass_vertex(c, t, at < vertex_band ? k : j, d, recording, result, &vertex);
       if (status != AQR_OK)
         return status;
       if (*result == AQR_INSIDE)
