@@ -366,7 +366,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
   aqr_context* c = &r->context;
   aqr_status status = AQR_OK;
   double goal = log((double)o->target_points), ask = goal - log(usual_excess), x[2] = { 0, 0 }, y[2] = { 0, 0 };
-  outcome best = { .error = INFINITY };
+  outcome best = { .report = r->report, .error = INFINITY };
   int known = 0;
   for (int i = 0; i < most_attempts; i++)
   {

@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What each option and each status of aqr.h promises. */
+#include "test.h"
+
+#include "remesh.h"
+#include "solids.h"
+
+static size_t points_of(const aqr_remesher* r)
+{
+  return aqr_remesher_mesh(r) ? aqr_remesher_mesh(r)->number_of_points : 0;
+}
+
+static size_t lines_of_type(const aqr_remesher* r, uint8_t type)
+{
+  const aqr_lines_view* l = aqr_remesher_lines(r);
+  size_t n = 0;
+  for (size_t i = 0; l && i < l->number_of_lines; i++)
+    n += l->type[i] == type;
+  return n;
+}
+
+static aqr_status again(aqr_remesher* r, aqr_options o)
+{
+  return aqr_remesher_run(r, &o);
+}
+
+/* ---- density ---- */
+
+AQR_TEST(the_number_of_points_falls_as_the_tolerance_grows)
+{
+  shape m = shape_torus(24, 1);
+  aqr_options o = aqr_default_options();
+  o.largest_spacing = 0.3;
+  o.tolerance = 0.004;
+  aqr_remesher* r = remesh(&m, &o);
+  size_t coarse = points_of(r);
+  o.tolerance = 0.001;
+  CHECK(again(r, o) == AQR_OK);
+  size_t fine = points_of(r);
+  printf("tolerance 0.004: %zu points, 0.001: %zu\n", coarse, fine);
+  CHECK(fine > 2.5 * (double)coarse && fine < 6 * (double)coarse); /* one over the tolerance */
+  CHECK(fabs(aqr_remesher_report(r)->tolerance - 0.001) < 1e-12);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+AQR_TEST(targets_are_met_within_five_percent)
+{
+  shape shapes[] = { shape_torus(24, 2), shape_plate(2, 7, 12, 3), shape_ellipsoid(22, 0.3, 4, v3(1, 0.6, 0.4)) };
+  for (int k = 0; k < 3; k++)
+  {
+    aqr_options o = options_for_points(400);
+    aqr_remesher* r = remesh(&shapes[k], &o);
+    const int64_t asked[] = { 400, 900 };
+    for (int i = 0; i < 2; i++)
+    {
+      CHECK(again(r, options_for_points(asked[i])) == AQR_OK);
+      CHECK_BELOW(fabs((double)points_of(r) / (double)asked[i] - 1), 0.05);
+      CHECK(!aqr_remesher_report(r)->target_missed);
+    }
+    aqr_remesher_free(r);
+    shape_free(&shapes[k]);
+  }
+}
+
+AQR_TEST(a_density_scale_of_four_brings_four_times_the_points)
+{
+  shape m = shape_torus(28, 5);
+  double* scale = malloc(m.n_points * sizeof *scale);
+  for (size_t i = 0; i < m.n_points; i++)
+    scale[i] = m.points[3 * i] > 0 ? 4 : 1;
+  aqr_options o = aqr_default_options();
+  o.tolerance = 0.002;
+  o.density_scale = scale;
+  aqr_remesher* r = remesh(&m, &o);
+  const aqr_mesh* mesh = aqr_remesher_mesh(r);
+  double right = 0;
+  for (size_t i = 0; i < mesh->number_of_points; i++)
+    right += mesh->points[3 * i] > 0;
+  CHECK_BELOW(fabs(log(right / ((double)mesh->number_of_points - right) / 4)),
+    log(2)); /* lines of the dense half go on into the other */
+  ;
+  scale[7] = 0;
+  CHECK(again(r, o) == AQR_BAD_OPTION);
+  scale[7] = NAN;
+  CHECK(again(r, o) == AQR_BAD_OPTION && strstr(aqr_remesher_message(r), "density_scale[7]"));
+  aqr_remesher_free(r);
+  free(scale);
+  shape_free(&m);
+}
+
+AQR_TEST(no_two_lines_are_much_farther_apart_than_the_largest_spacing)
+{
+  shape m = shape_grid(40, 40, false, false, 0.2, 6, place_on_plane);
+  aqr_options o = aqr_default_options();
+  aqr_remesher* r = remesh(&m, &o);
+  const double spacing[] = { 0.2, 0.1, 0.05 };
+  for (int k = 0; k < 3; k++)
+  {
+    o.largest_spacing = spacing[k];
+    CHECK(again(r, o) == AQR_OK);
+    double cells = 1 / (sqrt(2) * spacing[k]); /* along a side of the unit square, whose diagonal is sqrt(2) */
+    printf("largest spacing %g: %zu points\n", spacing[k], points_of(r));
+    CHECK((double)points_of(r) > 0.7 * cells * cells && (double)points_of(r) < 1.8 * (cells + 1) * (cells + 1));
+  }
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- directions ---- */
+
+AQR_TEST(radius_and_smoothing_calm_a_noisy_field)
+{
+  shape m = shape_torus(20, 7);
+  unsigned state = 1;
+  for (size_t i = 0; i < 3 * m.n_points; i++)
+    m.points[i] += 0.02 * (shape_random(&state) - 0.5);
+  aqr_options o = options_for_points(200);
+  double mean[3], most[3];
+  o.curvature_radius = 0;
+  o.smoothing_iterations = 0;
+  aqr_remesher* r = remesh(&m, &o);
+  for (int k = 0; k < 3; k++)
+  {
+    o.smoothing_iterations = k == 1 ? 20 : 0;
+    o.curvature_radius = k == 2 ? 0.05 : 0;
+    CHECK(again(r, o) == AQR_OK);
+    const aqr_field_view* f = aqr_remesher_field(r);
+    mean[k] = most[k] = 0;
+    for (size_t i = 0; i < f->number_of_triangles; i++)
+      mean[k] += (double)f->triangle_confidence[i] / (double)f->number_of_triangles;
+    for (size_t i = 0; i < f->number_of_points; i++)
+      most[k] = fmax(most[k], f->max_curvature[i]);
+  }
+  printf("mean confidence %g, smoothed %g; largest curvature %g, averaged %g\n", mean[0], mean[1], most[0], most[2]);
+  CHECK(1 - mean[1] < 0.6 * (1 - mean[0]));
+  CHECK(most[2] < 0.8 * most[0]);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+AQR_TEST(the_confidence_angle_decides_which_directions_lead_lines)
+{
+  shape m = shape_sphere(16, 8);
+  aqr_options o = options_for_points(300);
+  aqr_remesher* r = remesh(&m, &o);
+  uint64_t usual = hash_results(r);
+  o.confidence_angle = 89;
+  CHECK(again(r, o) == AQR_OK && hash_results(r) != usual);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- features and borders ---- */
+
+AQR_TEST(edges_of_a_cube_are_lines_only_where_asked_for)
+{
+  shape m = shape_cube(12, 0, 9);
+  aqr_options o = options_for_points(300);
+  aqr_remesher* r = remesh(&m, &o);
+  size_t corners = 0;
+  for (size_t i = 0; i < points_of(r); i++)
+    corners += aqr_remesher_mesh(r)->point_kind[i] == 3;
+  CHECK(lines_of_type(r, AQR_LINE_FEATURE) == 12 && corners == 8);
+  CHECK_BELOW(12 * 12 - 0.5, (double)aqr_remesher_report(r)->feature_edges);
+  o.feature_angle = 100;
+  CHECK(again(r, o) == AQR_OK && lines_of_type(r, AQR_LINE_FEATURE) == 0);
+  o.feature_angle = 80;
+  CHECK(again(r, o) == AQR_OK && lines_of_type(r, AQR_LINE_FEATURE) == 12);
+  o.feature_lines = 0;
+  CHECK(again(r, o) == AQR_OK && lines_of_type(r, AQR_LINE_FEATURE) == 0);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+static vec3 place_on_wavy_sheet(double u, double v)
+{
+  return v3(u, v * (1 + 0.03 * sin(6 * shape_turn * u)), 0);
+}
+AQR_TEST(borders_are_followed_only_where_asked_for)
+{
+  shape m = shape_grid(80, 40, false, false, 0, 10, place_on_wavy_sheet);
+  aqr_options o = aqr_default_options();
+  o.largest_spacing = 0.3;
+  size_t on_border[2];
+  aqr_remesher* r = remesh(&m, &o);
+  for (int k = 0; k < 2; k++)
+  {
+    o.boundary_lines = k;
+    CHECK(again(r, o) == AQR_OK);
+    on_border[k] = 0;
+    for (size_t i = 0; i < points_of(r); i++)
+      on_border[k] += aqr_remesher_mesh(r)->point_kind[i] != 0;
+    CHECK(!survey_mesh(aqr_remesher_mesh(r)).flaw);
+  }
+  printf("points on the border: %zu followed, %zu not\n", on_border[1], on_border[0]);
+  CHECK(on_border[0] < on_border[1]);
+  CHECK(lines_of_type(r, AQR_LINE_BOUNDARY) > 0 && aqr_remesher_report(r)->boundary_loops == 1);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- faces ---- */
+
+AQR_TEST(no_face_has_more_corners_than_the_largest_valence)
+{
+  shape m = shape_plate(2, 6, 6, 11);
+  aqr_options o = options_for_points(400);
+  aqr_remesher* r = remesh(&m, &o);
+  int most[65] = { 0 };
+  for (int valence = 4; valence <= 64; valence *= 2)
+  {
+    o.largest_valence = valence;
+    CHECK(again(r, o) == AQR_OK);
+    const aqr_mesh* mesh = aqr_remesher_mesh(r);
+    for (size_t f = 0; f < mesh->number_of_faces; f++)
+      most[valence] = (int)fmax(most[valence], (double)(mesh->offsets[f + 1] - mesh->offsets[f]));
+    printf("largest valence %d: %zu faces of up to %d corners\n", valence, mesh->number_of_faces, most[valence]);
+    CHECK(most[valence] <= valence);
+  }
+  CHECK(most[64] > 4); /* or there was nothing to split */
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+AQR_TEST(topology_is_kept_however_coarse_the_mesh)
+{
+  shape m = shape_plate(2, 4, 8, 12);
+  aqr_options o = aqr_default_options();
+  o.tolerance = 0.05;
+  o.largest_spacing = 1;
+  aqr_remesher* r = remesh(&m, &o);
+  survey kept = survey_mesh(aqr_remesher_mesh(r));
+  printf("%zu points, %zu cuts\n", points_of(r), aqr_remesher_report(r)->topology_cuts);
+  CHECK(!kept.flaw && kept.euler == -2);
+  CHECK(aqr_remesher_report(r)->topology_cuts > 0);
+  o.preserve_topology = 0;
+  CHECK(again(r, o) == AQR_OK);
+  CHECK(!survey_mesh(aqr_remesher_mesh(r)).flaw && aqr_remesher_report(r)->topology_cuts == 0);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- caching ---- */
+
+AQR_TEST(a_change_of_density_alone_reuses_the_field_and_gives_what_a_fresh_run_gives)
+{
+  shape m = shape_plate(1, 5, 8, 13);
+  aqr_options a = options_for_points(300), b = aqr_default_options();
+  aqr_remesher* r = remesh(&m, &a);
+  size_t n = 0;
+  for (size_t i = 0; i < 1 || i < n; i++)
+    CHECK(!aqr_remesher_stages(r, &n)[i].reused);
+  b.tolerance = 0.003;
+  CHECK(again(r, b) == AQR_OK);
+  const aqr_stage* stage = aqr_remesher_stages(r, &n);
+  for (size_t i = 0; i < n; i++)
+  {
+    bool kept = !strcmp(stage[i].name, "curvature") || !strcmp(stage[i].name, "direction field") ||
+                !strcmp(stage[i].name, "features");
+    bool made = !strcmp(stage[i].name, "lines") || !strcmp(stage[i].name, "faces");
+    CHECK(!kept || (stage[i].reused && stage[i].seconds <= 0));
+    CHECK(!made || !stage[i].reused);
+  }
+  aqr_remesher* fresh = remesh(&m, &b);
+  CHECK(hash_results(r) == hash_results(fresh) && hash_results(r) != 0);
+  /* each option in turn: what is left of the run before must not show */
+  for (int k = 0; k < 9; k++)
+  {
+    aqr_options o = b;
+    o.curvature_radius = k == 0 ? 0.03 : o.curvature_radius;
+    o.smoothing_iterations = k == 1 ? 9 : o.smoothing_iterations;
+    o.feature_angle = k == 2 ? 20 : o.feature_angle;
+    o.largest_spacing = k == 3 ? 0.2 : o.largest_spacing;
+    o.confidence_angle = k == 4 ? 70 : o.confidence_angle;
+    o.seed = k == 5 ? 3 : o.seed;
+    o.largest_valence = k == 6 ? 4 : o.largest_valence;
+    o.feature_lines = k == 7 ? 0 : o.feature_lines;
+    aqr_remesher* other = remesh(&m, &o);
+    CHECK(again(r, o) == AQR_OK && hash_results(r) == hash_results(other));
+    aqr_remesher_free(other);
+  }
+  aqr_remesher_free(fresh);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- every status ---- */
+
+static aqr_status status_of_input(const aqr_input* input)
+{
+  aqr_remesher* r = NULL;
+  CHECK(aqr_remesher_new(NULL, &r) == AQR_OK);
+  aqr_status status = aqr_remesher_set_input(r, input);
+  aqr_options o = aqr_default_options();
+  CHECK(status == AQR_OK || aqr_remesher_run(r, &o) == AQR_NO_INPUT);
+  CHECK(status == AQR_OK || !aqr_remesher_mesh(r));
+  CHECK(strlen(aqr_status_string(status)) > 5);
+  aqr_remesher_free(r);
+  return status;
+}
+
+AQR_TEST(every_unusable_input_has_its_status)
+{
+  double points[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
+  int64_t triangle[] = { 0, 1, 2 };
+  aqr_input input = { 3, NULL, points, 1, triangle };
+  CHECK(status_of_input(&input) == AQR_OK);
+  input.number_of_triangles = 0;
+  CHECK(status_of_input(&input) == AQR_EMPTY_INPUT);
+  input.number_of_triangles = 1;
+  input.number_of_points = 0;
+  CHECK(status_of_input(&input) == AQR_EMPTY_INPUT);
+  input.number_of_points = 3;
+  triangle[2] = 3;
+  CHECK(status_of_input(&input) == AQR_INDEX_OUT_OF_RANGE);
+  triangle[2] = -1;
+  CHECK(status_of_input(&input) == AQR_INDEX_OUT_OF_RANGE);
+  triangle[2] = 2;
+  points[4] = NAN;
+  CHECK(status_of_input(&input) == AQR_NON_FINITE_POINT);
+  points[4] = INFINITY;
+  CHECK(status_of_input(&input) == AQR_NON_FINITE_POINT);
+  points[4] = points[7] = 0;
+  CHECK(status_of_input(&input) == AQR_DEGENERATE_INPUT);
+}
+
+AQR_TEST(every_option_out_of_range_is_named)
+{
+  shape m = shape_sphere(6, 14);
+  aqr_options good = options_for_points(50);
+  aqr_remesher* r = remesh(&m, &good);
+  uint64_t before = hash_results(r);
+  for (int k = 0; k < 24; k++)
+  {
+    aqr_options o = good;
+    double low[] = { 0, -1, -1, 0, 1e-5, NAN, NAN, NAN }, high[] = { 0.2, 0.3, 91, 181, 1.1, INFINITY, NAN, NAN };
+    double* real[] = { &o.tolerance, &o.curvature_radius, &o.confidence_angle, &o.feature_angle, &o.largest_spacing,
+      &o.tolerance, &o.feature_angle, &o.curvature_radius };
+    const char* names[] = { "tolerance", "curvature_radius", "confidence_angle", "feature_angle", "largest_spacing",
+      "tolerance", "feature_angle", "curvature_radius" };
+    const char* name = names[k % 8];
+    if (k < 16)
+      *real[k % 8] = k < 8 ? low[k] : high[k - 8];
+    else if (k < 18)
+      o.target_points = k == 16 ? 3 : INT64_C(1) << 31, name = "target_points";
+    else if (k < 20)
+      o.smoothing_iterations = k == 18 ? -1 : 1001, name = "smoothing_iterations";
+    else if (k < 22)
+      o.largest_valence = k == 20 ? 3 : 65, name = "largest_valence";
+    else if (k == 22)
+      o.density = (aqr_density)2, name = "density";
+    else
+      o.cookie = 0, name = "cookie";
+    CHECK(again(r, o) == AQR_BAD_OPTION);
+    if (!strstr(aqr_remesher_message(r), name))
+      printf("%d: \"%s\" does not name %s\n", k, aqr_remesher_message(r), name);
+    CHECK(strstr(aqr_remesher_message(r), name));
+    CHECK(!aqr_remesher_mesh(r) && !aqr_remesher_lines(r) && !aqr_remesher_field(r));
+  }
+  CHECK(again(r, good) == AQR_OK && hash_results(r) == before && !*aqr_remesher_message(r));
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- hooks ---- */
+
+typedef struct watcher
+{
+  double last;
+  int calls, allowed;
+  bool fell;
+} watcher;
+
+static int watch(void* user, double fraction, const char* stage)
+{
+  watcher* w = user;
+  w->fell |= fraction < w->last || fraction > 1 || !stage || !*stage;
+  w->last = fraction;
+  return w->calls++ < w->allowed;
+}
+
+AQR_TEST(cancelling_anywhere_leaves_nothing_and_the_next_run_works)
+{
+  shape m = shape_plate(1, 4, 8, 15);
+  aqr_options o = options_for_points(150);
+  aqr_input input = shape_input(&m);
+  aqr_remesher* r = remesh(&m, &o);
+  uint64_t undisturbed = hash_results(r);
+  aqr_remesher_free(r);
+  for (int allowed = 0; allowed < 400; allowed = allowed * 3 / 2 + 1)
+  {
+    watcher w = { .allowed = allowed };
+    aqr_hooks hooks = { .user = &w, .progress = watch };
+    CHECK(aqr_remesher_new(&hooks, &r) == AQR_OK);
+    aqr_status status = aqr_remesher_set_input(r, &input);
+    w.last = 0;
+    if (status == AQR_OK)
+      status = aqr_remesher_run(r, &o);
+    CHECK(status == (w.calls > allowed ? AQR_CANCELLED : AQR_OK) && !w.fell);
+    CHECK(status == AQR_OK || !aqr_remesher_mesh(r));
+    w = (watcher){ .allowed = 1 << 30 };
+    CHECK(aqr_remesher_set_input(r, &input) == AQR_OK);
+    w.last = 0;
+    CHECK(again(r, o) == AQR_OK && hash_results(r) == undisturbed && !w.fell);
+    CHECK_BELOW(fabs(w.last - 1), 1e-12);
+    aqr_remesher_free(r);
+  }
+  shape_free(&m);
+}
+
+AQR_TEST_MAIN
