@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "test.h"
 
-#include "shapes.h"
-
-static vec3 place_on_plane(double u, double v)
-{
-  return v3(u, v, 0);
-}
+#include "solids.h"
 
 static double points_over_asked(const shape* m, int64_t asked)
 {
