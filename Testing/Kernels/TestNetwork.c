@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "test.h"
+
+#include "lines.h"
+#include "model.h"
+#include "solids.h"
+
+static aqr_sample end_on(const model* e, aqr_index h, double t, aqr_index key)
+{
+  aqr_index edge = aqr_edge_of(&e->s, h);
+  t = edge == h ? t : 1 - t;
+  return (aqr_sample){ .p = aqr_edge_point(&e->s, edge, t), .t = t, .edge = edge, .face = aqr_face_of(h), .key = key };
+}
+
+static double side(vec3 n, vec3 a, vec3 b, vec3 p)
+{
+  return v3_dot(n, v3_cross(v3_sub(b, a), v3_sub(p, a)));
+}
+
+/* The order of the chords' ends along the border of their face says what their geometry says. */
+AQR_TEST(chords_cross_by_order_exactly_where_they_cross_in_the_plane)
+{
+  model e = model_surface(shape_sphere(4, 1));
+  unsigned state = 2, crossed = 0;
+  for (int i = 0; i < 20000; i++)
+  {
+    aqr_index f = (aqr_index)((double)e.s.n_faces * shape_random(&state));
+    vec3 n = aqr_face_cross(&e.s, f);
+    aqr_sample a[4];
+    for (aqr_index k = 0; k < 4; k += 2)
+    {
+      unsigned from = (unsigned)(3 * shape_random(&state)), to = (from + 1 + (shape_random(&state) < 0.5)) % 3;
+      a[k] = end_on(&e, 3 * f + from, shape_random(&state), k);
+      a[k + 1] = end_on(&e, 3 * f + to, shape_random(&state), k + 1);
+    }
+    double b0 = side(n, a[0].p, a[1].p, a[2].p), b1 = side(n, a[0].p, a[1].p, a[3].p);
+    double a0 = side(n, a[2].p, a[3].p, a[0].p), a1 = side(n, a[2].p, a[3].p, a[1].p);
+    if (fmin(fmin(fabs(a0), fabs(a1)), fmin(fabs(b0), fabs(b1))) < 1e-12 * v3_norm2(n))
+      continue;
+    int expected = (b0 > 0) == (b1 > 0) || (a0 > 0) == (a1 > 0) ? 0 : b0 < 0 ? 1 : -1;
+    CHECK(aqr_chords_cross(&e.s, f, &a[0], &a[1], &a[2], &a[3]) == expected);
+    CHECK(aqr_chords_cross(&e.s, f, &a[2], &a[3], &a[0], &a[1]) == -expected);
+    crossed += expected != 0;
+  }
+  CHECK(crossed > 2000);
+  model_free(&e);
+}
+
+/* Two chords that leave through the very same point of an edge, as at a vertex, are told apart by their keys, and the
+ * same way on both sides of the edge. */
+AQR_TEST(lines_through_one_point_of_an_edge_cross_once_and_not_twice)
+{
+  model e = model_surface(shape_sphere(4, 3));
+  unsigned state = 4;
+  for (int i = 0; i < 2000; i++)
+  {
+    aqr_index h = (aqr_index)(3 * (double)e.s.n_faces * shape_random(&state)), g = aqr_twin(&e.s, h);
+    aqr_index f = aqr_face_of(h), o = aqr_face_of(g);
+    aqr_sample a[2], b[2], before[2], after[2];
+    for (aqr_index k = 0; k < 2; k++)
+    {
+      a[k] = end_on(&e, h, 0.5, 10 + k);
+      before[k] = end_on(&e, k ? aqr_next(h) : aqr_prev(h), 0.5, k);
+      after[k] = end_on(&e, k ? aqr_next(g) : aqr_prev(g), 0.5, 20 + k);
+      b[k] = a[k];
+    }
+    int in = aqr_chords_cross(&e.s, f, &before[0], &a[0], &before[1], &a[1]);
+    int out = aqr_chords_cross(&e.s, o, &b[0], &after[0], &b[1], &after[1]);
+    /* line 0 comes from the start of h and leaves beside its end, line 1 the other way round: they change sides */
+    CHECK((in != 0) + (out != 0) == 1);
+  }
+  model_free(&e);
+}
+
+AQR_TEST_MAIN
