@@ -83,7 +83,11 @@ static aqr_status build(
     v->place.bary[i % 3] = 1;
   }
   for (size_t i = 0; i < n_ids; i++)
-    vertices[i].normal = v3_unit(vertices[i].normal);
+  {
+    const aqr_place* at = &vertices[i].place;
+    aqr_index p = s->corner[3 * at->face + (at->bary[0] > 0 ? 0 : at->bary[1] > 0 ? 1 : 2)];
+    vertices[i].normal = v3_unit_or(vertices[i].normal, v3_load(field->normal + 3 * (size_t)p));
+  }
   AQR_TRY(aqr_pm_append(c, &k->mesh, vertices, n_ids, offsets, n, corner));
   for (size_t i = 0; i < n; i++)
   {

@@ -26,7 +26,8 @@ static vec3 normal_at(const aqr_surface* s, const aqr_field* field, const aqr_pl
   vec3 n = { 0, 0, 0 };
   for (unsigned i = 0; i < 3; i++)
     n = v3_madd(n, at->bary[i], v3_load(field->normal + 3 * (size_t)s->corner[3 * at->face + i]));
-  return v3_unit(n);
+  /* where the surface folds back on itself the sum may vanish */
+  return v3_unit_or(n, v3_load(field->normal + 3 * (size_t)s->corner[3 * at->face]));
 }
 
 static double size_at(const aqr_surface* s, const aqr_sizing* sizing, aqr_index face)
@@ -73,7 +74,7 @@ static aqr_vertex vertex_of_stop(
     aqr_place there = { aqr_face_of(other), { 0, 0, 0 } };
     there.bary[other % 3] = t;
     there.bary[(other % 3 + 1) % 3] = 1 - t;
-    r.normal = v3_unit(v3_add(r.normal, normal_at(s, field, &there)));
+    r.normal = v3_unit_or(v3_add(r.normal, normal_at(s, field, &there)), r.normal);
     r.size = fmin(r.size, size_at(s, sizing, there.face));
   }
   r.kind = corner                                            ? AQR_VERTEX_CORNER

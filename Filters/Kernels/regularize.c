@@ -14,7 +14,7 @@ aqr_vertex aqr_middle(const aqr_polygon_mesh* m, aqr_index h)
   const aqr_vertex *a = &m->vertices[aqr_pm_from(m, h)], *b = &m->vertices[aqr_pm_to(m, h)];
   aqr_vertex r = *a;
   r.position = v3_scale(v3_add(a->position, b->position), 0.5);
-  r.normal = v3_unit(v3_add(a->normal, b->normal));
+  r.normal = v3_unit_or(v3_add(a->normal, b->normal), a->normal);
   if (!(v3_norm2(r.normal) > 0))
     r.normal = a->normal;
   r.size = 0.5 * (a->size + b->size);

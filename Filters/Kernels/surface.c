@@ -453,7 +453,9 @@ done:
   return status;
 }
 
-static aqr_status count_loops(builder* b)
+/* Counts the boundary's loops. One of two edges is where a non-manifold edge was cut although the other faces there
+ * left: both of its edges join the same two points, so they are one edge again. */
+static aqr_status close_loops(builder* b)
 {
   const aqr_surface* s = b->s;
   size_t n = 3 * s->n_faces;
@@ -464,8 +466,15 @@ static aqr_status count_loops(builder* b)
   {
     if (seen[h] || !aqr_is_boundary(s, h))
       continue;
-    b->report->boundary_loops++;
     /* every point has one fan: the border goes on along the clockwise-most half-edge of the next point */
+    aqr_index next = s->fan[aqr_to(s, h)];
+    if (aqr_to(s, next) == aqr_from(s, h))
+    {
+      s->twin[h] = next;
+      s->twin[next] = h;
+      continue;
+    }
+    b->report->boundary_loops++;
     for (aqr_index k = h; !seen[k]; k = s->fan[aqr_to(s, k)])
       seen[k] = 1;
   }
@@ -503,7 +512,7 @@ aqr_status aqr_surface_build(
   AQR_TRY(pair_half_edges(&b));
   AQR_TRY(orient(&b));
   AQR_TRY(split_points(&b));
-  AQR_TRY(count_loops(&b));
+  AQR_TRY(close_loops(&b));
   AQR_TRY(aqr_surface_refine(c, s, longest_edge, &report->refined_points));
   for (size_t i = 0; i < s->n_points; i++)
     s->clean[i] = (aqr_index)i;

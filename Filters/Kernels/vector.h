@@ -63,6 +63,12 @@ static inline vec3 v3_unit(vec3 a)
   double n = v3_norm(a);
   return n > 0 ? v3_scale(a, 1 / n) : (vec3){ 0, 0, 0 };
 }
+/* The unit vector along a, or `otherwise` where a has no direction or next to none. */
+static inline vec3 v3_unit_or(vec3 a, vec3 otherwise)
+{
+  double n = v3_norm(a);
+  return n > 1e-12 ? v3_scale(a, 1 / n) : otherwise;
+}
 /* The part of a orthogonal to the unit vector n. */
 static inline vec3 v3_reject(vec3 a, vec3 n)
 {

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Memory that runs out at any allocation, and a cancel at any step of progress. */
+#include "test.h"
+
+#include "judge.h"
+#include "shapes.h"
+
+typedef struct trial
+{
+  size_t held, allocations, fail_at; /* fail_at 0: never */
+  size_t steps, cancel_at;
+  double last;
+} trial;
+
+static void* ration_bytes(void* user, void* old, size_t old_bytes, size_t bytes)
+{
+  trial* t = user;
+  if (bytes == 0)
+  {
+    free(old);
+    t->held -= old_bytes;
+    return NULL;
+  }
+  if (++t->allocations == t->fail_at)
+    return NULL;
+  void* p = realloc(old, bytes);
+  t->held = t->held - old_bytes + bytes;
+  return p;
+}
+
+static int count_steps(void* user, double fraction, const char* stage)
+{
+  trial* t = user;
+  CHECK(fraction >= t->last && fraction <= 1 && stage);
+  t->last = fraction;
+  return ++t->steps != t->cancel_at;
+}
+
+static const aqr_hooks* hooks_of(trial* t)
+{
+  static aqr_hooks hooks;
+  hooks = (aqr_hooks){ t, ration_bytes, count_steps, NULL };
+  return &hooks;
+}
+
+/* A box without a lid beside a strip too small for lines: creases, borders, corners, and a component that is decimated. */
+static shape small_scene(void)
+{
+  shape m = shape_ellipsoid(2, 0, 1, v3(1, 0.1, 0.07));
+  m.points = realloc(m.points, (3 * m.n_points + 9) * sizeof *m.points);
+  const double far[9] = { 1.1, 0, 0, 1.11, 0, 0, 1.1, 0.01, 0 };
+  memcpy(m.points + 3 * m.n_points, far, sizeof far);
+  for (int i = 0; i < 3; i++)
+    m.triangles[i] = (int64_t)m.n_points + i;
+  m.n_points += 3;
+  return m;
+}
+
+static aqr_options small_options(int by_points)
+{
+  aqr_options o = aqr_default_options();
+  o.density = by_points ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE;
+  o.target_points = 30;
+  o.tolerance = 0.02;
+  o.largest_spacing = 0.3;
+  o.smoothing_iterations = 1;
+  o.feature_angle = 25;
+  return o;
+}
+
+static bool has_result(const aqr_remesher* r)
+{
+  return aqr_remesher_mesh(r) || aqr_remesher_field(r) || aqr_remesher_lines(r);
+}
+
+static bool is_valid(const aqr_remesher* r)
+{
+  const aqr_mesh* m = aqr_remesher_mesh(r);
+  return m && !judge_mesh(m->number_of_points, m->points, m->number_of_faces, m->offsets, m->connectivity).fault;
+}
+
+static aqr_status input_and_run(aqr_remesher* r, const aqr_input* input, const aqr_options* o)
+{
+  aqr_status status = aqr_remesher_set_input(r, input);
+  return status == AQR_OK ? aqr_remesher_run(r, o) : status;
+}
+
+/* Steps of n that visit the first 400 one by one and some two thousand in all. */
+static size_t after(size_t n)
+{
+  return n < 400 ? n + 1 : n + 1 + (n - 400) / 1000 + n % 5;
+}
+
+static void fail_everywhere(int by_points, size_t* visited)
+{
+  shape m = small_scene();
+  aqr_input input = shape_input(&m);
+  aqr_options o = small_options(by_points);
+  for (size_t n = 1;; n = after(n))
+  {
+    trial t = { .fail_at = n };
+    aqr_remesher* r = NULL;
+    aqr_status status = aqr_remesher_new(hooks_of(&t), &r);
+    if (status == AQR_OK)
+      status = input_and_run(r, &input, &o);
+    bool failed = t.allocations >= n;
+    CHECK(status == (failed ? AQR_OUT_OF_MEMORY : AQR_OK));
+    if (r && failed)
+    {
+      CHECK(!has_result(r));
+      /* what was cached before the failure serves; without an input one must be set again */
+      t.last = 0;
+      status = aqr_remesher_run(r, &o);
+      t.last = 0;
+      if (status == AQR_NO_INPUT)
+        status = input_and_run(r, &input, &o);
+      CHECK(status == AQR_OK && is_valid(r));
+    }
+    aqr_remesher_free(r);
+    CHECK(t.held == 0);
+    ++*visited;
+    if (!failed || aqr_failures)
+    {
+      printf("%zu allocations, %zu of them failed in turn\n", t.allocations, *visited - 1);
+      break;
+    }
+  }
+  shape_free(&m);
+}
+
+AQR_TEST(memory_that_runs_out_is_an_error_and_the_next_run_works)
+{
+  size_t visited = 0;
+  fail_everywhere(0, &visited);
+}
+
+AQR_TEST(memory_that_runs_out_while_a_target_is_met_is_an_error)
+{
+  size_t visited = 0;
+  fail_everywhere(1, &visited);
+}
+
+AQR_TEST(a_cancel_at_any_step_stops_and_the_next_run_works)
+{
+  shape m = small_scene();
+  aqr_input input = shape_input(&m);
+  for (int by_points = 0; by_points < 2; by_points++)
+  {
+    aqr_options o = small_options(by_points);
+    for (size_t n = 1;; n++)
+    {
+      trial t = { .cancel_at = n };
+      aqr_remesher* r = NULL;
+      CHECK(aqr_remesher_new(hooks_of(&t), &r) == AQR_OK);
+      aqr_status status = input_and_run(r, &input, &o);
+      size_t steps = t.steps;
+      bool last = status == AQR_OK && steps == n; /* the step that says that all is done asks no more */
+      CHECK(steps <= n && (steps == n ? status == AQR_CANCELLED || last : status == AQR_OK));
+      if (status == AQR_CANCELLED)
+      {
+        CHECK(!has_result(r));
+        t.last = 0;
+        status = aqr_remesher_run(r, &o);
+        t.last = 0;
+        if (status == AQR_NO_INPUT)
+          status = input_and_run(r, &input, &o);
+        CHECK(status == AQR_OK && is_valid(r));
+      }
+      aqr_remesher_free(r);
+      CHECK(t.held == 0);
+      if (steps < n || aqr_failures)
+      {
+        printf("%zu steps, cancelled at each\n", steps);
+        break;
+      }
+    }
+  }
+  shape_free(&m);
+}
+
+AQR_TEST_MAIN

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Reads a fuzzer's bytes; past their end everything is 0. */
+#ifndef AQR_TEST_BYTES_H
+#define AQR_TEST_BYTES_H
+
+#include "aqr.h"
+
+#include <string.h>
+
+typedef struct bytes
+{
+  const uint8_t* at;
+  size_t left;
+} bytes;
+
+static inline void take(bytes* b, void* to, size_t n)
+{
+  size_t k = n < b->left ? n : b->left;
+  memset(to, 0, n);
+  if (k)
+    memcpy(to, b->at, k);
+  b->at += k;
+  b->left -= k;
+}
+static inline uint8_t take_8(bytes* b)
+{
+  uint8_t x;
+  take(b, &x, sizeof x);
+  return x;
+}
+static inline uint16_t take_16(bytes* b)
+{
+  uint16_t x;
+  take(b, &x, sizeof x);
+  return x;
+}
+static inline double take_double(bytes* b)
+{
+  double x;
+  take(b, &x, sizeof x);
+  return x;
+}
+
+/* Options within their ranges, coarse enough for many runs a second: four bytes. */
+static inline aqr_options take_mild_options(bytes* b)
+{
+  aqr_options o = aqr_default_options();
+  uint8_t flags = take_8(b), fineness = take_8(b), angle = take_8(b), rest = take_8(b);
+  o.density = flags & 1 ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE;
+  o.feature_lines = !(flags & 2);
+  o.boundary_lines = !(flags & 4);
+  o.convex_partition = !(flags & 8);
+  o.preserve_topology = !(flags & 16);
+  o.curvature_radius = flags & 32 ? 0 : 0.02;
+  o.smoothing_iterations = flags & 64 ? 0 : 5;
+  o.largest_spacing = flags & 128 ? 0.3 : 0.1;
+  o.tolerance = 0.001 + 0.0001 * fineness;
+  o.target_points = 4 + 2 * fineness;
+  o.feature_angle = angle ? angle * (180.0 / 255) : 40;
+  o.largest_valence = 4 + rest % 8;
+  o.seed = rest / 8;
+  return o;
+}
+
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Fuzzes surfaces with defects: four bytes of options, one for the surface, seven or more for every defect. */
+#include "bytes.h"
+#include "examine.h"
+#include "mutate.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+  bytes b = { data, size };
+  aqr_options options = take_mild_options(&b);
+  shape m = mutate_base(take_8(&b));
+  if (mutate(&m, &b))
+  {
+    aqr_input input = shape_input(&m);
+    aqr_status status;
+    const char* fault = examine(&input, &options, &status);
+    if (fault)
+    {
+      fprintf(stderr, "fault: %s (%s)\n", fault, aqr_status_string(status));
+      abort();
+    }
+  }
+  shape_free(&m);
+  return 0;
+}
