@@ -6,6 +6,12 @@ enum
   most_around = 256 /* faces looked at around a vertex */
 };
 
+/* 0 in triangles so small that products of their edges underflow. */
+static double share(double part, double whole)
+{
+  return whole > 0 ? part / whole : 0;
+}
+
 /* The point of a face closest to p, by the regions of its plane (Ericson, Real-Time Collision Detection, 5.1.5). */
 static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
 {
@@ -24,7 +30,7 @@ static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
   }
   else if (vc <= 0 && d1 >= 0 && d3 <= 0)
   {
-    v = d1 / (d1 - d3);
+    v = share(d1, d1 - d3);
     w = 0;
   }
   else if (d6 >= 0 && d5 <= d6)
@@ -35,18 +41,18 @@ static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
   else if (vb <= 0 && d2 >= 0 && d6 <= 0)
   {
     v = 0;
-    w = d2 / (d2 - d6);
+    w = share(d2, d2 - d6);
   }
   else if (va <= 0 && d4 >= d3 && d5 >= d6)
   {
-    w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    w = share(d4 - d3, (d4 - d3) + (d5 - d6));
     v = 1 - w;
   }
   else
   {
     double sum = va + vb + vc;
-    v = sum > 0 ? vb / sum : 0;
-    w = sum > 0 ? vc / sum : 0;
+    v = share(vb, sum);
+    w = share(vc, sum);
   }
   double u = v == 0 ? 1 - w : w == 0 ? 1 - v : fmax(0, 1 - v - w);
   if (v + w >= 1)

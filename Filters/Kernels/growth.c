@@ -158,7 +158,9 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
   vec3 seen = seed;
   aqr_status status = AQR_OK;
   *end = AQR_END_LENGTH;
-  for (int i = 0; i < most_steps && t->travelled < longest_line; i++)
+  /* a line with more crossings winds around something too thin for lines */
+  const size_t most_samples = s->n_faces + 1000;
+  for (int i = 0; i < most_steps && t->travelled < longest_line && t->n_samples < most_samples && !t->lost; i++)
   {
     if (i % 256 == 255)
       AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);

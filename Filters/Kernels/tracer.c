@@ -6,7 +6,7 @@
 
 enum
 {
-  most_faces = 100000 /* crossed by one straight move; a bound for broken geometry only */
+  most_faces = 400 /* crossed by one straight move, and some more in dense surfaces */
 };
 
 static const double vertex_band = 1e-9; /* of an edge: nearer to its end counts as passing through the vertex */
@@ -134,6 +134,7 @@ void aqr_tracer_start(aqr_tracer* t, const aqr_place* at, vec3 direction)
   t->isotropic = false;
   t->n_samples = 0;
   t->travelled = 0;
+  t->lost = false;
 }
 
 void aqr_tracer_where(const aqr_tracer* t, vec3* position, vec3* direction)
@@ -367,7 +368,8 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
   const aqr_surface* s = t->surface;
   unsigned vertex = 3; /* corner that the point stands on, just passed; 3: none */
   *result = AQR_INSIDE;
-  for (int i = 0; i < most_faces; i++)
+  const int most = most_faces + 4 * (int)sqrt((double)s->n_faces);
+  for (int i = 0; i < most; i++)
   {
     double side[3], at;
     unsigned k = vertex < 3 ? opposite_edge(&t->chart, vertex, d, &at) : exit_edge(&t->chart, t->x, d, side);
@@ -431,6 +433,7 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
     t->chart = next;
     *result = AQR_INSIDE;
   }
+  t->lost = true;
   return AQR_OK;
 }
 

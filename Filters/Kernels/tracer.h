@@ -31,6 +31,7 @@ typedef struct aqr_tracer
   aqr_chart chart;
   aqr_complex x, d; /* position and unit direction in the chart */
   bool isotropic;   /* the last step followed the trusted direction, not the field */
+  bool lost;        /* among faces so thin that no move came to its end */
   double travelled; /* along the surface since the start: around a thin tube far more than through space */
   aqr_sample* samples;
   size_t n_samples, capacity;

@@ -43,7 +43,8 @@ static const aqr_hooks* hooks_of(trial* t)
   return &hooks;
 }
 
-/* A box without a lid beside a strip too small for lines: creases, borders, corners, and a component that is decimated. */
+/* A box without a lid beside a strip too small for lines: creases, borders, corners, and a component that is decimated.
+ */
 static shape small_scene(void)
 {
   shape m = shape_ellipsoid(2, 0, 1, v3(1, 0.1, 0.07));

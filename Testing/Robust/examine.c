@@ -168,8 +168,9 @@ static const char* check_results(const aqr_remesher* r, const aqr_input* input, 
   if (!fault)
     fault = check_box(m, f);
   if (fault)
-    fprintf(stderr, "surface: %zu points, Euler %ld, %zu loops, %zu components; mesh: %zu points, %ld, %zu, %zu; "
-                    "report: %zu loops, %zu components; %s\n",
+    fprintf(stderr,
+      "surface: %zu points, Euler %ld, %zu loops, %zu components; mesh: %zu points, %ld, %zu, %zu; "
+      "report: %zu loops, %zu components; %s\n",
       f->number_of_points, surface.euler, surface.boundary_loops, surface.components, m->number_of_points, mesh.euler,
       mesh.boundary_loops, mesh.components, aqr_remesher_report(r)->boundary_loops, aqr_remesher_report(r)->components,
       surface.fault ? "the surface is at fault" : fault);

@@ -71,12 +71,8 @@ typedef struct bench
   int64_t* outgoing; /* per point: where its boundary goes on, -1 when it has none */
 } bench;
 
-static const char* check_faces(size_t n_points,
-  const double* points,
-  size_t n_faces,
-  const int64_t* offsets,
-  const int64_t* connectivity,
-  bench* b)
+static const char* check_faces(
+  size_t n_points, const double* points, size_t n_faces, const int64_t* offsets, const int64_t* connectivity, bench* b)
 {
   for (size_t i = 0; i < 3 * n_points; i++)
     if (!isfinite(points[i]))
@@ -180,8 +176,8 @@ verdict judge_mesh(
   bench b = { malloc(n_corners * sizeof(side)), malloc(n_faces * sizeof(uint64_t)), malloc(most * sizeof(int64_t)),
     malloc(most * sizeof(size_t)), malloc(n_points * sizeof(int64_t)) };
   v.fault = b.sides && b.hash && b.sorted && b.parent && b.outgoing
-    ? check_faces(n_points, points, n_faces, offsets, connectivity, &b)
-    : "the judge has no memory";
+              ? check_faces(n_points, points, n_faces, offsets, connectivity, &b)
+              : "the judge has no memory";
   if (!v.fault)
     v.fault = check_fans(n_points, connectivity, n_corners, &b, &n_edges, &n_boundary);
   if (!v.fault)

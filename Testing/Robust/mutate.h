@@ -107,8 +107,8 @@ static inline void mutate_once(shape* m, bytes* b)
       break;
     default: /* split at a point of its own */
       for (int k = 0; k < 3; k++)
-        m->points[3 * m->n_points + (size_t)k] = 0.999 * m->points[3 * corner[0] + k] +
-          0.0005 * (m->points[3 * corner[1] + k] + m->points[3 * corner[2] + k]);
+        m->points[3 * m->n_points + (size_t)k] =
+          0.999 * m->points[3 * corner[0] + k] + 0.0005 * (m->points[3 * corner[1] + k] + m->points[3 * corner[2] + k]);
       m->triangles[3 * m->n_triangles] = corner[0];
       m->triangles[3 * m->n_triangles + 1] = corner[1];
       m->triangles[3 * m->n_triangles++ + 2] = (int64_t)m->n_points;

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What fuzzing found, each named after what went wrong. */
+#include "test.h"
+
+#include "examine.h"
+#include "shapes.h"
+
+static const char* fault_of(const aqr_input* input, const aqr_options* o)
+{
+  aqr_status status;
+  const char* fault = examine(input, o, &status);
+  if (fault)
+    printf("%s\n", fault);
+  return fault;
+}
+
+/* The counts of the repair were lost in all attempts but the first. */
+AQR_TEST(the_report_of_a_run_that_meets_a_target_is_whole)
+{
+  shape m = shape_cylinder(10, 1);
+  aqr_input input = shape_input(&m);
+  aqr_options o = aqr_default_options();
+  o.density = AQR_DENSITY_POINTS;
+  o.target_points = 20;
+  CHECK(!fault_of(&input, &o));
+  shape_free(&m);
+}
+
+/* Three faces at an edge were cut apart, and the two that met elsewhere too kept a boundary of two edges there. */
+AQR_TEST(a_fin_inside_a_sheet_leaves_no_slit)
+{
+  const double points[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0, 1, 1, 0, 0.5, 0.5, 1, 1, -1, 0, -1, -1, 0,
+    -1, 1, 0 };
+  const int64_t triangles[] = { 0, 1, 2, 1, 5, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1, 4, 7, 1, 3, 8, 4, 2, 9, 3, 1, 2, 6, 0, 1,
+    6 };
+  aqr_input input = { 10, NULL, points, 9, triangles };
+  aqr_options o = aqr_default_options();
+  o.tolerance = 0.01;
+  CHECK(!fault_of(&input, &o));
+  input.number_of_triangles = 10;
+  CHECK(!fault_of(&input, &o));
+}
+
+/* Normals on both sides of a fold cancelled out, and the point between had none. */
+AQR_TEST(points_on_a_fold_have_a_normal)
+{
+  const double points[] = { 0, 0, 0, 1, 0, 0, 0.5, 1, 0, 0.5, 1, 0.0000001, 0.2, 1, 0, 0.8, 1, -0.0000001 };
+  const int64_t triangles[] = { 0, 1, 2, 1, 0, 3, 0, 2, 4, 1, 5, 2 };
+  aqr_input input = { 6, NULL, points, 4, triangles };
+  for (int features = 0; features < 2; features++)
+  {
+    aqr_options o = aqr_default_options();
+    o.feature_lines = features;
+    o.tolerance = 0.01;
+    CHECK(!fault_of(&input, &o));
+  }
+}
+
+/* Around a tube far thinner than the spacing, a line wound until memory ran out. */
+AQR_TEST(lines_do_not_wind_around_threads)
+{
+  enum
+  {
+    around = 3,
+    along = 40
+  };
+  const double thin[] = { 1e-4, 1e-8, 1e-12, 1e-20 };
+  for (size_t k = 0; k < sizeof thin / sizeof *thin; k++)
+  {
+    shape m = shape_grid(around, along, true, false, 0, 1, place_on_cylinder);
+    for (size_t i = 0; i < m.n_points; i++)
+    {
+      m.points[3 * i] *= thin[k];
+      m.points[3 * i + 1] *= thin[k];
+    }
+    /* a sheet beside it, so that the thread is not all there is */
+    const double far[9] = { 0.5, 0, 0, 0.5, 0, 1, 1, 0.5, 0.5 };
+    m.points = realloc(m.points, (3 * m.n_points + 9) * sizeof *m.points);
+    m.triangles = realloc(m.triangles, (3 * m.n_triangles + 3) * sizeof *m.triangles);
+    memcpy(m.points + 3 * m.n_points, far, sizeof far);
+    for (int i = 0; i < 3; i++)
+      m.triangles[3 * m.n_triangles + (size_t)i] = (int64_t)m.n_points + i;
+    m.n_points += 3;
+    m.n_triangles++;
+    aqr_input input = shape_input(&m);
+    aqr_options o = aqr_default_options();
+    o.tolerance = 0.01;
+    CHECK(!fault_of(&input, &o));
+    shape_free(&m);
+  }
+}
+
+/* Beside coordinates of 1e30 all others coincide next to exactly, and products of edges underflow. */
+AQR_TEST(a_component_too_small_for_its_products_stays_finite)
+{
+  shape m = shape_grid(4, 4, false, false, 0.3, 1, place_on_cylinder);
+  for (size_t i = 0; i < 3 * m.n_points; i++)
+    m.points[i] *= 1e-170;
+  m.points = realloc(m.points, (3 * m.n_points + 9) * sizeof *m.points);
+  m.triangles = realloc(m.triangles, (3 * m.n_triangles + 3) * sizeof *m.triangles);
+  const double far[9] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
+  memcpy(m.points + 3 * m.n_points, far, sizeof far);
+  for (int i = 0; i < 3; i++)
+    m.triangles[3 * m.n_triangles + (size_t)i] = (int64_t)m.n_points + i;
+  m.n_points += 3;
+  m.n_triangles++;
+  aqr_input input = shape_input(&m);
+  aqr_options o = aqr_default_options();
+  o.tolerance = 0.01;
+  CHECK(!fault_of(&input, &o));
+  shape_free(&m);
+}
+
+AQR_TEST_MAIN
