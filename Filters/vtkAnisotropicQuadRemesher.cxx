@@ -9,7 +9,6 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
@@ -25,6 +24,7 @@
 #include "vtkSMPTools.h"
 #include "vtkSignedCharArray.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
@@ -126,6 +126,7 @@ struct Slot
   vtkSmartPointer<vtkPoints> Points; // kept, so that no other object can take its address
   vtkMTimeType Time = 0;
   SurfaceDigest Digest = {};
+  unsigned long Turn = 0;
 
   Slot() = default;
   Slot(const Slot&) = delete;
@@ -142,35 +143,27 @@ struct Slot
     return aqr_remesher_new(&hooks, &this->Remesher);
   }
 };
-
-//------------------------------------------------------------------------------
-// The executive runs a filter for polygonal data once for each block of a composite data set; so many
-// surfaces are kept, since the next update brings all of them again.
-size_t NumberOfSurfaces(vtkAlgorithm* filter)
-{
-  vtkAlgorithmOutput* connection = filter->GetInputConnection(0, 0);
-  vtkDataObject* whole = connection ? connection->GetProducer()->GetOutputDataObject(connection->GetIndex()) : nullptr;
-  auto* blocks = vtkCompositeDataSet::SafeDownCast(whole);
-  if (!blocks)
-  {
-    return 0;
-  }
-  size_t count = 0;
-  auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
-  {
-    ++count;
-  }
-  return count;
-}
 }
 
 //------------------------------------------------------------------------------
 class vtkAnisotropicQuadRemesher::vtkInternals
 {
 public:
+  // The executive runs a filter for polygonal data once for each block of a composite data set, after it has
+  // asked for the whole. The surfaces of the last turn are kept, since the next brings them again.
+  void BeginBlocks(vtkAlgorithmOutput* connection)
+  {
+    if (this->TurnIsUsed)
+    {
+      this->Slots.remove_if([&](const Slot& slot) { return slot.Turn != this->Turn; });
+      this->Turn++;
+      this->TurnIsUsed = false;
+    }
+    this->Blocks = connection;
+  }
+
   // Makes current the slot that holds this surface, or else hands the surface to the one longest unused.
-  aqr_status SetInput(vtkPolyData* input, size_t surfaces, const aqr_hooks& hooks)
+  aqr_status SetInput(vtkPolyData* input, const aqr_hooks& hooks)
   {
     const vtkMTimeType time = GeometryTime(input);
     const auto unchanged = [&](const Slot& slot) { return slot.Points == input->GetPoints() && slot.Time == time; };
@@ -187,7 +180,7 @@ public:
     {
       this->Slots.splice(this->Slots.begin(), this->Slots, found);
     }
-    else if (this->Slots.size() < surfaces || this->Slots.empty())
+    else if (this->Slots.empty() || this->InBlocks)
     {
       this->Slots.emplace_front();
     }
@@ -195,11 +188,13 @@ public:
     {
       this->Slots.splice(this->Slots.begin(), this->Slots, std::prev(this->Slots.end()));
     }
-    while (this->Slots.size() > surfaces)
+    if (!this->InBlocks)
     {
-      this->Slots.pop_back();
+      this->Slots.resize(1);
     }
     Slot& slot = this->Slots.front();
+    slot.Turn = this->Turn;
+    this->TurnIsUsed = true;
     aqr_status status = slot.SetHooks(hooks);
     if (status == AQR_OK && !known)
     {
@@ -310,6 +305,10 @@ public:
   }
 
   std::list<Slot> Slots; // the current one first
+  bool InBlocks = false;
+  vtkAlgorithmOutput* Blocks = nullptr; // only compared: the connection that last had a composite data set
+  unsigned long Turn = 0;
+  bool TurnIsUsed = false;
   std::vector<double> DensityScale;
   std::vector<std::string> Warnings;
 };
@@ -398,7 +397,7 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
   hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
   const auto run = [&]
   {
-    status = internals.SetInput(input, std::max<size_t>(1, NumberOfSurfaces(this)), hooks);
+    status = internals.SetInput(input, hooks);
     if (status == AQR_OK)
     {
       status = aqr_remesher_run(internals.Remesher(), &options);
@@ -516,6 +515,18 @@ void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* outp
 }
 
 //------------------------------------------------------------------------------
+vtkTypeBool vtkAnisotropicQuadRemesher::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
+      vtkCompositeDataSet::SafeDownCast(vtkDataObject::GetData(inputVector[0], 0)))
+  {
+    this->Internals->BeginBlocks(this->GetInputConnection(0, 0));
+  }
+  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+//------------------------------------------------------------------------------
 int vtkAnisotropicQuadRemesher::RequestData(
   vtkInformation* vtkNotUsed(request), vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -528,11 +539,12 @@ int vtkAnisotropicQuadRemesher::RequestData(
   }
   vtkInternals& internals = *this->Internals;
   internals.Warnings.clear();
+  internals.InBlocks = internals.Blocks && internals.Blocks == this->GetInputConnection(0, 0);
   this->SetErrorCode(vtkErrorCode::NoError);
 
   if (input->GetNumberOfPoints() == 0 || input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
   {
-    if (NumberOfSurfaces(this) > 0)
+    if (internals.InBlocks)
     {
       return 1; // blocks and pieces of a larger data set may well be empty
     }

@@ -53,6 +53,7 @@ public:
   static vtkAnisotropicQuadRemesher* New();
   vtkTypeMacro(vtkAnisotropicQuadRemesher, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   /** The output ports. */
   enum OutputPorts

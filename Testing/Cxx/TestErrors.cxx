@@ -4,6 +4,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkErrorCode.h"
+#include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 
 #include <limits>
@@ -52,6 +53,18 @@ int TestErrors(int, char*[])
     checks.Check(filter->GetErrorCode() >= vtkErrorCode::UserError, "error code", line);
     messages.Clear();
   };
+
+  // Without any input the executive speaks, once, and the filter does not run.
+  {
+    vtkNew<vtkAnisotropicQuadRemesher> alone;
+    Messages executive(alone->GetExecutive());
+    alone->Update();
+    CHECK(executive.Errors == 1 && executive.Says("0 connections"));
+    CHECK(AllEmpty(alone));
+    alone->SetInputData(good);
+    alone->Update();
+    CHECK(alone->GetOutput(0)->GetNumberOfPolys() > 0);
+  }
 
   vtkNew<vtkPolyData> empty;
   expectError(empty, "no polygons", __LINE__);
