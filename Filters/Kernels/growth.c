@@ -12,7 +12,7 @@ enum
   in_place = 48       /* steps after which a line that has not got away turns around a point of the field */
 };
 
-static const double stop_distance = 0.4; /* of the spacing: nearer than this to a line of its family a line ends */
+static const double stop_distance = 0.3; /* of the spacing: nearer than this to a line of its family a line ends */
 static const double longest_line = 20;   /* diagonals */
 static const double longest_step = 0.5;  /* of the smaller spacing */
 static const double shortest_step = 0.1;
