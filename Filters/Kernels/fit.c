@@ -4,16 +4,23 @@
 #include "borders.h"
 #include "closest.h"
 
+#include <string.h>
+
 enum
 {
   most_steps = 512, /* faces walked from a corner of a polygon to below a sample of it */
-  solver_steps = 24,
+  rounds = 3,
+  solver_steps = 12,
   damp_rounds = 6,
   samples = 6
 };
 
-static const double regularization = 1e-3; /* relative to the diagonal */
-static const double farthest_move = 0.3;   /* of the shortest edge at a vertex */
+static const double hold_normal = 1e-3;  /* of a vertex in its place, relative to its part of the error */
+static const double hold_first = 5;      /* along the surface, where the error says little, in the first round */
+static const double hold_tangent = 0.25; /* and in the others */
+static const double least_gain = 0.9;    /* of the error: for less, no vertex leaves its lines */
+static const double farthest_move = 0.3; /* of the shortest edge at a vertex, in one round */
+static const double least_sine = 0.3;    /* of a corner's angle: a move does not make it smaller than that */
 static const double farthest_sample =
   0.5;                                  /* of the longest side: what is farther away is another part of the surface */
 static const double least_cosine = 0.3; /* between a polygon and the surface below it */
@@ -28,24 +35,40 @@ static const double barycentric[samples][3] = { { 0.108103018168070, 0.445948490
 static const double weight[samples] = { 0.223381589678011, 0.223381589678011, 0.223381589678011, 0.109951743655322,
   0.109951743655322, 0.109951743655322 };
 
-/* A triangle of a polygon and its part of the normal equations. */
+/* A place in a triangle and the tangent plane of the surface below it, both scaled by the root of the area it stands
+ * for. */
+typedef struct sample
+{
+  float normal[3], distance;
+  aqr_index face; /* where the next round looks first */
+} sample;
+
+/* A triangle of a polygon. */
 typedef struct triangle
 {
   aqr_index v[3];
-  double matrix[6]; /* 00 11 22 01 02 12 */
-  double right[3];
+  sample at[samples];
+  float image[samples]; /* of the solver's direction */
+  float error;          /* squared distance, over the area */
 } triangle;
 
 typedef struct fit
 {
   const aqr_surface* s;
+  const double* normals; /* of the surface, 3 per point, or NULL */
   aqr_polygon_mesh* m;
   size_t n_triangles;
   size_t* first; /* per face: its first triangle; n_faces + 1 */
   triangle* triangles;
   size_t* first_corner; /* per vertex, into `corners`; n_vertices + 2 */
   aqr_index* corners;   /* 3 * triangle + corner */
-  double *move, *residual, *direction, *image, *diagonal;
+  vec3 *move, *residual, *direction, *image, *before;
+  double* inverse; /* per vertex: of its own 3 x 3 block: xx yy zz xy xz yz; 0 where it stays */
+  double* error;   /* per vertex: of its triangles, before the last move */
+  uint8_t* back;   /* per vertex: the last move was taken back */
+  double hold;     /* along the surface */
+  double worth;    /* what the error around a vertex may be after a move, relative to before */
+  bool partly;     /* only triangles with vertices taken back are measured */
 } fit;
 
 static void snap(void* data, size_t begin, size_t end)
@@ -83,13 +106,16 @@ static aqr_status allocate(aqr_context* c, fit* f)
   f->triangles = AQR_NEW(c, triangle, f->n_triangles);
   f->first_corner = AQR_NEW(c, size_t, n + 2);
   f->corners = AQR_NEW(c, aqr_index, 3 * f->n_triangles);
-  f->move = AQR_NEW(c, double, n);
-  f->residual = AQR_NEW(c, double, n);
-  f->direction = AQR_NEW(c, double, n);
-  f->image = AQR_NEW(c, double, n);
-  f->diagonal = AQR_NEW(c, double, n);
+  f->move = AQR_NEW(c, vec3, n);
+  f->residual = AQR_NEW(c, vec3, n);
+  f->direction = AQR_NEW(c, vec3, n);
+  f->image = AQR_NEW(c, vec3, n);
+  f->before = AQR_NEW(c, vec3, n);
+  f->inverse = AQR_NEW(c, double, 6 * n);
+  f->error = AQR_NEW(c, double, n);
+  f->back = AQR_NEW0(c, uint8_t, n);
   return f->triangles && f->first_corner && f->corners && f->move && f->residual && f->direction && f->image &&
-             f->diagonal
+             f->before && f->inverse && f->error && f->back
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
 }
@@ -105,7 +131,10 @@ static void release(aqr_context* c, fit* f)
   AQR_DROP(c, f->residual, n);
   AQR_DROP(c, f->direction, n);
   AQR_DROP(c, f->image, n);
-  AQR_DROP(c, f->diagonal, n);
+  AQR_DROP(c, f->before, n);
+  AQR_DROP(c, f->inverse, 6 * n);
+  AQR_DROP(c, f->error, n);
+  AQR_DROP(c, f->back, n);
 }
 
 /* Fans from the first corner; quads are cut at the shorter diagonal, as renderers that care do. */
@@ -128,7 +157,10 @@ static void triangulate(void* data, size_t begin, size_t end)
     for (size_t t = f->first[i]; t < f->first[i + 1]; t++)
     {
       h = aqr_pm_next(m, h);
-      f->triangles[t] = (triangle){ .v = { a, aqr_pm_from(m, h), aqr_pm_to(m, h) } };
+      triangle* x = &f->triangles[t];
+      x->v[0] = a;
+      x->v[1] = aqr_pm_from(m, h);
+      x->v[2] = aqr_pm_to(m, h);
     }
   }
 }
@@ -150,8 +182,19 @@ static void list_corners(fit* f)
 
 /* ---- the normal equations ---- */
 
-/* Distance from samples of each triangle to the tangent planes of the surface below them, linear in the moves of its
- * corners along their normals. */
+static void start_samples(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t i = begin; i < end; i++)
+    for (unsigned k = 0; k < samples; k++)
+    {
+      const double* w = barycentric[k];
+      unsigned nearest = w[0] >= w[1] && w[0] >= w[2] ? 0 : w[1] >= w[2] ? 1 : 2;
+      f->triangles[i].at[k].face = f->m->vertices[f->triangles[i].v[nearest]].place.face;
+    }
+}
+
+/* Distance from samples of each triangle to the tangent planes of the surface below them. */
 static void measure(void* data, size_t begin, size_t end)
 {
   fit* f = data;
@@ -159,106 +202,173 @@ static void measure(void* data, size_t begin, size_t end)
   for (size_t i = begin; i < end; i++)
   {
     triangle* t = &f->triangles[i];
-    const aqr_vertex* v[3];
+    vec3 p[3];
+    if (f->partly && !f->back[t->v[0]] && !f->back[t->v[1]] && !f->back[t->v[2]])
+      continue;
     for (unsigned k = 0; k < 3; k++)
-      v[k] = &f->m->vertices[t->v[k]];
-    vec3 ab = v3_sub(v[1]->position, v[0]->position), ac = v3_sub(v[2]->position, v[0]->position);
-    vec3 cross = v3_cross(ab, ac), normal = v3_unit(cross);
-    double area = 0.5 * v3_norm(cross);
+      p[k] = aqr_pm_point(f->m, t->v[k]);
+    vec3 ab = v3_sub(p[1], p[0]), ac = v3_sub(p[2], p[0]), cross = v3_cross(ab, ac), normal = v3_unit(cross);
+    double area = 0.5 * v3_norm(cross), error = 0;
     double reach = fmax(fmax(v3_norm2(ab), v3_norm2(ac)), v3_norm2(v3_sub(ab, ac))) * farthest_sample * farthest_sample;
     for (unsigned k = 0; k < samples; k++)
     {
       const double* w = barycentric[k];
-      vec3 q = v3_madd(v3_madd(v3_scale(v[0]->position, w[0]), w[1], v[1]->position), w[2], v[2]->position);
-      unsigned nearest = w[0] >= w[1] && w[0] >= w[2] ? 0 : w[1] >= w[2] ? 1 : 2;
-      aqr_closest below = aqr_closest_near(s, v[nearest]->place.face, q, most_steps, true);
+      sample* x = &t->at[k];
+      vec3 q = v3_madd(v3_madd(v3_scale(p[0], w[0]), w[1], p[1]), w[2], p[2]);
+      aqr_closest below = aqr_closest_near(s, x->face, q, most_steps, true);
       vec3 n = v3_unit(aqr_face_cross(s, below.place.face));
-      if (!(below.distance2 < reach) || !(v3_dot(n, normal) > least_cosine))
-        continue;
-      double a = area * weight[k], d = v3_dot(v3_sub(below.position, q), n), g[3];
-      for (unsigned j = 0; j < 3; j++)
-      {
-        g[j] = w[j] * v3_dot(v[j]->normal, n);
-        t->right[j] += a * d * g[j];
-        t->matrix[j] += a * g[j] * g[j];
-      }
-      t->matrix[3] += a * g[0] * g[1];
-      t->matrix[4] += a * g[0] * g[2];
-      t->matrix[5] += a * g[1] * g[2];
+      error += area * weight[k] * fmin(reach, below.distance2);
+      bool use = below.distance2 < reach && v3_dot(n, normal) > least_cosine;
+      double a = use ? sqrt(area * weight[k]) : 0;
+      x->normal[0] = (float)(a * n.x);
+      x->normal[1] = (float)(a * n.y);
+      x->normal[2] = (float)(a * n.z);
+      x->distance = use ? (float)(a * v3_dot(v3_sub(below.position, q), n)) : 0;
+      x->face = below.place.face;
     }
+    t->error = (float)error;
   }
 }
 
-/* Sets up the diagonal and the right-hand side, and the first step of the solver. Fixed vertices have a zero row. */
+static vec3 times_inverse(const double* a, vec3 b)
+{
+  return v3(
+    a[0] * b.x + a[3] * b.y + a[4] * b.z, a[3] * b.x + a[1] * b.y + a[5] * b.z, a[4] * b.x + a[5] * b.y + a[2] * b.z);
+}
+
+/* The inverse of a symmetric, positive definite matrix; false where it is not. */
+static bool invert(const double* a, double* inverse)
+{
+  double xx = a[1] * a[2] - a[5] * a[5], xy = a[4] * a[5] - a[3] * a[2], xz = a[3] * a[5] - a[4] * a[1];
+  double det = a[0] * xx + a[3] * xy + a[4] * xz;
+  if (!(det > 0))
+    return false;
+  const double r[6] = { xx, a[0] * a[2] - a[4] * a[4], a[0] * a[1] - a[3] * a[3], xy, xz, a[3] * a[4] - a[0] * a[5] };
+  for (unsigned i = 0; i < 6; i++)
+    inverse[i] = r[i] / det;
+  return true;
+}
+
+/* What holds a vertex in its place, times x: a share of its part of the error. */
+static vec3 held(const fit* f, const aqr_vertex* v, double trace, vec3 x)
+{
+  double along = v3_dot(x, v->normal);
+  return v3_scale(v3_madd(v3_scale(x, f->hold), (hold_normal - f->hold) * along, v->normal), trace);
+}
+
+/* Sets up each vertex' own block and the right-hand side. Fixed vertices have none. */
 static void begin_rows(void* data, size_t begin, size_t end)
 {
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
-    double diagonal = 0, right = 0;
-    for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
+    const aqr_vertex* x = &f->m->vertices[v];
+    double a[6] = { 0 };
+    vec3 right = v3(0, 0, 0);
+    for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1] && x->kind == AQR_VERTEX_INTERIOR; i++)
     {
       const triangle* t = &f->triangles[f->corners[i] / 3];
-      diagonal += t->matrix[f->corners[i] % 3];
-      right += t->right[f->corners[i] % 3];
+      for (unsigned k = 0; k < samples; k++)
+      {
+        double w = barycentric[k][f->corners[i] % 3];
+        vec3 n = v3(w * (double)t->at[k].normal[0], w * (double)t->at[k].normal[1], w * (double)t->at[k].normal[2]);
+        a[0] += n.x * n.x;
+        a[1] += n.y * n.y;
+        a[2] += n.z * n.z;
+        a[3] += n.x * n.y;
+        a[4] += n.x * n.z;
+        a[5] += n.y * n.z;
+        right = v3_madd(right, (double)t->at[k].distance, n);
+      }
     }
-    bool free_row = f->m->vertices[v].kind == AQR_VERTEX_INTERIOR && diagonal > 0;
-    f->diagonal[v] = free_row ? (1 + regularization) * diagonal : 0;
-    f->residual[v] = free_row ? right : 0;
-    f->direction[v] = free_row ? right / f->diagonal[v] : 0;
-    f->move[v] = 0;
+    double trace = a[0] + a[1] + a[2];
+    vec3 e[3] = { held(f, x, trace, v3(1, 0, 0)), held(f, x, trace, v3(0, 1, 0)), held(f, x, trace, v3(0, 0, 1)) };
+    const double sum[6] = { a[0] + e[0].x, a[1] + e[1].y, a[2] + e[2].z, a[3] + e[0].y, a[4] + e[0].z, a[5] + e[1].z };
+    double* inverse = f->inverse + 6 * v;
+    if (!invert(sum, inverse))
+      memset(inverse, 0, 6 * sizeof *inverse);
+    f->residual[v] = right;
+    f->direction[v] = times_inverse(inverse, right);
+    f->image[v] = v3(0, 0, 0);
+    f->move[v] = v3(0, 0, 0);
+  }
+}
+
+/* What the direction does to the distances. */
+static void multiply_samples(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t i = begin; i < end; i++)
+  {
+    triangle* t = &f->triangles[i];
+    vec3 a = f->direction[t->v[0]], b = f->direction[t->v[1]], c = f->direction[t->v[2]];
+    for (unsigned k = 0; k < samples; k++)
+    {
+      const double* w = barycentric[k];
+      const float* n = t->at[k].normal;
+      vec3 d = v3_madd(v3_madd(v3_scale(a, w[0]), w[1], b), w[2], c);
+      t->image[k] = (float)((double)n[0] * d.x + (double)n[1] * d.y + (double)n[2] * d.z);
+    }
   }
 }
 
 /* image = matrix * direction */
 static void multiply(void* data, size_t begin, size_t end)
 {
-  static const unsigned char at[3][3] = { { 0, 3, 4 }, { 3, 1, 5 }, { 4, 5, 2 } };
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
-    double sum = 0;
-    for (size_t i = f->first_corner[v]; f->diagonal[v] > 0 && i < f->first_corner[v + 1]; i++)
+    double trace = 0;
+    vec3 sum = v3(0, 0, 0);
+    if (!(f->inverse[6 * v] > 0))
+      continue;
+    for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
     {
       const triangle* t = &f->triangles[f->corners[i] / 3];
-      unsigned k = f->corners[i] % 3;
-      for (unsigned j = 0; j < 3; j++)
-        sum += t->matrix[at[k][j]] * f->direction[t->v[j]];
+      for (unsigned k = 0; k < samples; k++)
+      {
+        double w = barycentric[k][f->corners[i] % 3], b = w * (double)t->image[k];
+        vec3 n = v3((double)t->at[k].normal[0], (double)t->at[k].normal[1], (double)t->at[k].normal[2]);
+        sum = v3_madd(sum, b, n);
+        trace += w * w * v3_norm2(n);
+      }
     }
-    f->image[v] = sum + regularization / (1 + regularization) * f->diagonal[v] * f->direction[v];
+    f->image[v] = v3_add(sum, held(f, &f->m->vertices[v], trace, f->direction[v]));
   }
 }
 
-/* Conjugate gradients with the diagonal as preconditioner. Sums run in the order of the vertices, so that they do not
- * depend on threads. The matrix is a mass matrix: a fixed number of steps is enough. */
-static aqr_status solve(aqr_context* c, fit* f, double from, double to)
+/* Conjugate gradients with the blocks of single vertices as preconditioner. Sums run in the order of the vertices, so
+ * that they do not depend on threads. The matrix is nearly a mass matrix: a fixed number of steps is enough. */
+static aqr_status solve(aqr_context* c, fit* f, double at)
 {
   aqr_status status = AQR_OK;
   size_t n = f->m->n_vertices;
   double rho = 0, first;
-  AQR_TRY(aqr_parallel(c, n, begin_rows, f, from, from));
+  AQR_TRY(aqr_parallel(c, n, begin_rows, f, at, at));
   for (size_t v = 0; v < n; v++)
-    rho += f->residual[v] * f->direction[v];
+    rho += v3_dot(f->residual[v], f->direction[v]);
   first = rho;
-  for (unsigned step = 0; step < solver_steps && rho > 1e-12 * first; step++)
+  for (unsigned step = 0; step < solver_steps && rho > 1e-8 * first; step++)
   {
-    double fraction = from + (to - from) * step / solver_steps, energy = 0, next = 0;
-    AQR_TRY(aqr_parallel(c, n, multiply, f, fraction, fraction));
+    double energy = 0, next = 0;
+    AQR_TRY(aqr_parallel(c, f->n_triangles, multiply_samples, f, at, at));
+    AQR_TRY(aqr_parallel(c, n, multiply, f, at, at));
     for (size_t v = 0; v < n; v++)
-      energy += f->direction[v] * f->image[v];
+      energy += v3_dot(f->direction[v], f->image[v]);
     if (!(energy > 0))
       break;
     for (size_t v = 0; v < n; v++)
     {
-      if (!(f->diagonal[v] > 0))
-        continue;
-      f->move[v] += rho / energy * f->direction[v];
-      f->residual[v] -= rho / energy * f->image[v];
-      next += f->residual[v] * f->residual[v] / f->diagonal[v];
+      f->move[v] = v3_madd(f->move[v], rho / energy, f->direction[v]);
+      f->residual[v] = v3_madd(f->residual[v], -rho / energy, f->image[v]);
+      f->image[v] = times_inverse(f->inverse + 6 * v, f->residual[v]);
+      next += v3_dot(f->residual[v], f->image[v]);
     }
     for (size_t v = 0; v < n; v++)
-      if (f->diagonal[v] > 0)
-        f->direction[v] = f->residual[v] / f->diagonal[v] + next / rho * f->direction[v];
+    {
+      f->direction[v] = v3_madd(f->image[v], next / rho, f->direction[v]);
+      f->image[v] = v3(0, 0, 0);
+    }
     rho = next;
   }
 done:
@@ -273,7 +383,7 @@ static void limit(void* data, size_t begin, size_t end)
   const aqr_polygon_mesh* m = f->m;
   for (size_t v = begin; v < end; v++)
   {
-    double least = INFINITY;
+    double least = INFINITY, length = v3_norm(f->move[v]);
     aqr_index h = m->vertices[v].out;
     do
     {
@@ -281,33 +391,42 @@ static void limit(void* data, size_t begin, size_t end)
       h = aqr_pm_next_around(m, h);
     } while (h != m->vertices[v].out);
     double most = farthest_move * sqrt(least);
-    f->move[v] = isfinite(f->move[v]) ? fmax(-most, fmin(most, f->move[v])) : 0;
+    if (!isfinite(length))
+      f->move[v] = v3(0, 0, 0);
+    else if (length > most)
+      f->move[v] = v3_scale(f->move[v], most / length);
   }
 }
 
-/* Halves the moves of corners whose triangle would turn against the surface, in the end to nothing. */
+/* The sine of the angle at the middle one of three vertices, moved so far. */
+static double sine(const fit* f, const aqr_index* v, double moved)
+{
+  vec3 p[3];
+  for (unsigned i = 0; i < 3; i++)
+    p[i] = v3_madd(aqr_pm_point(f->m, v[i]), moved, f->move[v[i]]);
+  vec3 a = v3_sub(p[2], p[1]), b = v3_sub(p[0], p[1]);
+  double n = v3_norm(a) * v3_norm(b);
+  return n > 0 ? v3_dot(v3_cross(a, b), f->m->vertices[v[1]].normal) / n : -1;
+}
+
+/* Halves the moves around corners that would become too sharp, flat or turned over, in the end to nothing. */
 static void damp(fit* f)
 {
+  const aqr_polygon_mesh* m = f->m;
   for (unsigned round = 0; round < damp_rounds; round++)
   {
     bool folded = false;
-    for (size_t i = 0; i < f->n_triangles; i++)
+    for (aqr_index h = 0; h < m->n_half_edges; h++)
     {
-      const triangle* t = &f->triangles[i];
-      vec3 p[3], q[3], normal = { 0, 0, 0 };
-      for (unsigned k = 0; k < 3; k++)
-      {
-        const aqr_vertex* v = &f->m->vertices[t->v[k]];
-        normal = v3_add(normal, v->normal);
-        p[k] = v->position;
-        q[k] = v3_madd(v->position, f->move[t->v[k]], v->normal);
-      }
-      if (v3_dot(normal, v3_cross(v3_sub(q[1], q[0]), v3_sub(q[2], q[0]))) > 0 ||
-          !(v3_dot(normal, v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0]))) > 0))
+      if (aqr_pm_face(m, h) == AQR_NONE)
+        continue;
+      const aqr_index v[3] = { aqr_pm_from(m, aqr_pm_prev(m, h)), aqr_pm_from(m, h), aqr_pm_to(m, h) };
+      double after = sine(f, v, 1);
+      if (after > least_sine || after >= sine(f, v, 0))
         continue;
       folded = true;
       for (unsigned k = 0; k < 3; k++)
-        f->move[t->v[k]] *= round + 1 < damp_rounds ? 0.5 : 0;
+        f->move[v[k]] = v3_scale(f->move[v[k]], round + 1 < damp_rounds ? 0.5 : 0);
     }
     if (!folded)
       break;
@@ -320,25 +439,97 @@ static void apply(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     aqr_vertex* x = &f->m->vertices[v];
-    x->position = v3_madd(x->position, f->move[v], x->normal);
+    f->before[v] = x->position;
+    x->position = v3_add(x->position, f->move[v]);
   }
 }
 
-aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, aqr_polygon_mesh* m)
+/* Finds the place below a vertex that has moved along the surface. */
+static void settle(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    aqr_vertex* x = &f->m->vertices[v];
+    if (x->kind != AQR_VERTEX_INTERIOR)
+      continue;
+    x->place = aqr_closest_near(f->s, x->place.face, x->position, most_steps, true).place;
+    vec3 n = v3(0, 0, 0);
+    for (unsigned i = 0; i < 3 && f->normals; i++)
+      n = v3_madd(n, x->place.bary[i], v3_load(f->normals + 3 * (size_t)f->s->corner[3 * x->place.face + i]));
+    if (v3_norm2(n) > 0)
+      x->normal = v3_unit(n);
+  }
+}
+
+static double error_around(const fit* f, size_t v)
+{
+  double sum = 0;
+  for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
+    sum += (double)f->triangles[f->corners[i] / 3].error;
+  return sum;
+}
+
+/* Takes the last move back where it was not worth it. */
+static void take_back(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    f->back[v] = error_around(f, v) > f->worth * f->error[v];
+    if (f->back[v])
+      f->m->vertices[v].position = f->before[v];
+  }
+}
+
+static void note_error(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t v = begin; v < end; v++)
+    f->error[v] = error_around(f, v);
+}
+
+/* Measures the error after a move, and again where the move had to be taken back. */
+static aqr_status judge(aqr_context* c, fit* f, double from, double to)
 {
   aqr_status status = AQR_OK;
-  fit f = { .s = s, .m = m };
+  f->partly = false;
+  AQR_TRY(aqr_parallel(c, f->m->n_faces, triangulate, f, from, from));
+  AQR_TRY(aqr_parallel(c, f->n_triangles, measure, f, from, to));
+  list_corners(f);
+  AQR_TRY(aqr_parallel(c, f->m->n_vertices, take_back, f, to, to));
+  f->partly = true;
+  AQR_TRY(aqr_parallel(c, f->n_triangles, measure, f, to, to));
+  f->partly = false;
+done:
+  return status;
+}
+
+aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, aqr_polygon_mesh* m)
+{
+  aqr_status status = AQR_OK;
+  fit f = { .s = s, .normals = normals, .m = m };
   size_t n = m->n_vertices;
   AQR_TRY(aqr_place_on_borders(c, s, m));
   AQR_TRY(aqr_parallel(c, n, snap, &f, 0, 0.1));
   AQR_TRY(allocate(c, &f));
-  AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, 0.1, 0.15));
+  AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, 0.1, 0.1));
+  AQR_TRY(aqr_parallel(c, f.n_triangles, start_samples, &f, 0.1, 0.1));
+  AQR_TRY(aqr_parallel(c, f.n_triangles, measure, &f, 0.1, 0.25));
   list_corners(&f);
-  AQR_TRY(aqr_parallel(c, f.n_triangles, measure, &f, 0.15, 0.8));
-  AQR_TRY(solve(c, &f, 0.8, 0.95));
-  AQR_TRY(aqr_parallel(c, n, limit, &f, 0.95, 1));
-  damp(&f);
-  AQR_TRY(aqr_parallel(c, n, apply, &f, 1, 1));
+  for (unsigned round = 0; round < rounds; round++)
+  {
+    double at = 0.25 + 0.65 * round / rounds, next = 0.25 + 0.65 * (round + 1) / rounds;
+    f.hold = round ? hold_tangent : hold_first;
+    f.worth = round ? least_gain : 1;
+    AQR_TRY(aqr_parallel(c, n, note_error, &f, at, at));
+    AQR_TRY(solve(c, &f, at));
+    AQR_TRY(aqr_parallel(c, n, limit, &f, at, at));
+    damp(&f);
+    AQR_TRY(aqr_parallel(c, n, apply, &f, at, at));
+    AQR_TRY(judge(c, &f, at, next));
+  }
+  AQR_TRY(aqr_parallel(c, n, settle, &f, 0.9, 1));
 done:
   release(c, &f);
   return status;

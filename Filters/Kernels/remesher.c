@@ -534,7 +534,7 @@ static aqr_status run_stages(aqr_remesher* r, const aqr_options* o)
   AQR_TRY(run_cached(r, AQR_STAGE_SIZING, o, run_sizing));
   AQR_TRY(run_lines(r, o));
   double began = begin_stage(r, AQR_STAGE_FIT);
-  AQR_TRY(aqr_fit(&r->context, r->surface, &r->polygons));
+  AQR_TRY(aqr_fit(&r->context, r->surface, r->field.normal, &r->polygons));
   end_stage(r, AQR_STAGE_FIT, began);
   began = begin_stage(r, AQR_STAGE_RESULT);
   AQR_TRY(run_results(r));

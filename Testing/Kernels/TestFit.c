@@ -96,7 +96,7 @@ AQR_TEST(a_lattice_on_a_bowl_is_fitted_as_well_as_can_be)
   CHECK(grid_of_quads(&c, 20, 20, false, on_bowl, &m));
   set_places(&s, &m);
   CHECK(rms(&m, from_bowl, is_middle_of_bowl) > 1.35 * e);
-  CHECK(aqr_fit(&c, &s, &m) == AQR_OK);
+  CHECK(aqr_fit(&c, &s, NULL, &m) == AQR_OK);
   CHECK_BELOW(rms(&m, from_bowl, is_middle_of_bowl) / e, 0.45);
   aqr_polygon_mesh_free(&c, &m);
   free_surface(&s);
@@ -113,7 +113,7 @@ AQR_TEST(a_lattice_on_a_torus_loses_half_of_its_error)
   CHECK(grid_of_quads(&c, 40, 16, true, on_torus, &m));
   set_places(&s, &m);
   double before = rms(&m, from_torus, is_anywhere);
-  CHECK(aqr_fit(&c, &s, &m) == AQR_OK);
+  CHECK(aqr_fit(&c, &s, NULL, &m) == AQR_OK);
   CHECK_BELOW(rms(&m, from_torus, is_anywhere) / before, 0.45);
   aqr_polygon_mesh_free(&c, &m);
   free_surface(&s);
@@ -137,7 +137,7 @@ AQR_TEST(vertices_of_the_boundary_do_not_move)
   set_places(&s, &m);
   aqr_vertex* old = malloc(m.n_vertices * sizeof *old);
   memcpy(old, m.vertices, m.n_vertices * sizeof *old);
-  CHECK(aqr_fit(&c, &s, &m) == AQR_OK);
+  CHECK(aqr_fit(&c, &s, NULL, &m) == AQR_OK);
   for (size_t v = 0; v < m.n_vertices; v++)
   {
     double moved = v3_norm(v3_sub(m.vertices[v].position, old[v].position));
@@ -195,7 +195,7 @@ AQR_TEST(the_fit_does_not_depend_on_how_loops_are_divided)
   CHECK(grid_of_quads(&c, 20, 10, true, on_torus, &m) && grid_of_quads(&d, 20, 10, true, on_torus, &n));
   set_places(&s, &m);
   set_places(&s, &n);
-  CHECK(aqr_fit(&c, &s, &m) == AQR_OK && aqr_fit(&d, &s, &n) == AQR_OK);
+  CHECK(aqr_fit(&c, &s, NULL, &m) == AQR_OK && aqr_fit(&d, &s, NULL, &n) == AQR_OK);
   for (size_t v = 0; v < m.n_vertices; v++)
     CHECK(memcmp(&m.vertices[v].position, &n.vertices[v].position, sizeof(vec3)) == 0);
   aqr_polygon_mesh_free(&c, &m);
@@ -220,7 +220,7 @@ AQR_TEST(a_border_with_a_single_vertex_opens_to_a_triangle)
     CHECK(aqr_pm_compact(&c, &m) == AQR_OK);
   }
   CHECK(m.n_vertices == 1 && m.n_half_edges == 2 && m.n_faces == 1);
-  CHECK(aqr_regularize(&c, &m) == AQR_OK && aqr_fit(&c, &s, &m) == AQR_OK);
+  CHECK(aqr_regularize(&c, &m) == AQR_OK && aqr_fit(&c, &s, NULL, &m) == AQR_OK);
   CHECK(m.n_vertices == 3 && aqr_pm_is_regular(&m));
   double x = 0, y = 0;
   for (size_t v = 0; v < m.n_vertices; v++)
@@ -248,7 +248,7 @@ AQR_TEST(a_fit_that_runs_out_of_memory_says_so)
     aqr_polygon_mesh m = { 0 };
     CHECK(grid_of_quads(&c, 8, 5, true, on_torus, &m));
     r.left = allowed;
-    aqr_status status = aqr_fit(&c, &s, &m);
+    aqr_status status = aqr_fit(&c, &s, NULL, &m);
     CHECK(status == AQR_OK || status == AQR_OUT_OF_MEMORY);
     failed += status != AQR_OK;
     aqr_polygon_mesh_free(&c, &m);
@@ -273,7 +273,7 @@ AQR_TEST(a_fit_can_be_cancelled)
   aqr_surface s;
   CHECK(surface_of_grid(&c, 20, 10, true, on_torus, &s) && grid_of_quads(&c, 8, 5, true, on_torus, &m));
   c.hooks.progress = never;
-  CHECK(aqr_fit(&c, &s, &m) == AQR_CANCELLED);
+  CHECK(aqr_fit(&c, &s, NULL, &m) == AQR_CANCELLED);
   aqr_polygon_mesh_free(&c, &m);
   free_surface(&s);
   CHECK(c.bytes == 0);
