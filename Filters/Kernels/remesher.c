@@ -24,7 +24,7 @@ static const double corner_angle = 45;    /* a chain turning more sharply has a 
 static const double shortest_feature = 0.02;
 static const double sharpest = 2; /* over the averaging radius: bends sharper than that it cannot tell from noise */
 static const double least_radius = 0.001;
-static const double usual_excess = 1.45; /* of points over the prediction: lines end, and what ends costs points */
+static const double usual_excess = 1.4; /* of points over the prediction: lines end, and what ends costs points */
 static const double target_accuracy = 0.03;
 static const double missed_accuracy = 0.045; /* of the logarithm: within 5 % */
 

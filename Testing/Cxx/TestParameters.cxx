@@ -159,7 +159,8 @@ int TestParameters(int, char*[])
     }
     const double ratio = static_cast<double>(right) / static_cast<double>(mesh->GetNumberOfPoints() - right);
     std::cout << "points on the dense half over the other: " << ratio << "\n";
-    CHECK(ratio > 2.0 && ratio < 6.0);
+    // Lines around the whole torus are as many on both halves, those across the tube twice as many.
+    CHECK(ratio > 1.9 && ratio < 6.0);
   }
 
   { // Features
