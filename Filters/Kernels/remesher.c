@@ -332,6 +332,11 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
   return status;
 }
 
+static bool differ(double a, double b)
+{
+  return a < b || a > b;
+}
+
 /* One attempt's outcome, held while another is made. */
 typedef struct outcome
 {
@@ -367,11 +372,14 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
   aqr_status status = AQR_OK;
   double goal = log((double)o->target_points), ask = goal - log(usual_excess), x[2] = { 0, 0 }, y[2] = { 0, 0 };
   outcome best = { .report = r->report, .error = INFINITY };
+  double tolerance = 0, before = 0;
   int known = 0;
   for (int i = 0; i < most_attempts; i++)
   {
-    double tolerance;
+    before = tolerance;
     AQR_TRY(aqr_sizing_solve(c, r->surface, exp(ask), &r->sizing, &tolerance));
+    if (i > 0 && !differ(tolerance, before))
+      break; /* as many or as few as the input can carry */
     AQR_TRY(attempt(r, o, tolerance));
     double made = log(fmax(1, (double)count_vertices(&r->polygons))), error = fabs(made - goal);
     if (error < best.error)
@@ -449,11 +457,6 @@ static uint64_t fingerprint(const double* a, size_t n)
     h = (h ^ bits) * 0x100000001b3u;
   }
   return a ? h : 0;
-}
-
-static bool differ(double a, double b)
-{
-  return a < b || a > b;
 }
 
 /* The first stage that reads an option which changed. */

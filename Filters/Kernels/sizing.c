@@ -9,8 +9,8 @@ enum
   solve_steps = 60
 };
 
-static const double least_spacing = 1e-6;
-static const double finest = 0.5; /* of the input's local size: lines closer than this would sample its noise */
+static const double least_spacing = 1e-4; /* along a thread without area nothing else bounds the work */
+static const double finest = 0.5;         /* of the input's local size: lines closer than this would sample its noise */
 static const double least_tolerance = 1e-9, most_tolerance = 0.25;
 static const double sparse =
   0.6; /* over the points asked for: a larger tolerance is not taken before the largest spacing gives way */
