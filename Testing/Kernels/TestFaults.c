@@ -86,6 +86,11 @@ static aqr_status input_and_run(aqr_remesher* r, const aqr_input* input, const a
   return status == AQR_OK ? aqr_remesher_run(r, o) : status;
 }
 
+enum
+{
+  recover_every = 6 /* failures: the next run is tried */
+};
+
 /* Steps of n that visit the first 400 one by one and some two thousand in all. */
 static size_t after(size_t n)
 {
@@ -106,9 +111,9 @@ static void fail_everywhere(int by_points, size_t* visited)
       status = input_and_run(r, &input, &o);
     bool failed = t.allocations >= n;
     CHECK(status == (failed ? AQR_OUT_OF_MEMORY : AQR_OK));
-    if (r && failed)
+    CHECK(!r || !failed || !has_result(r));
+    if (r && failed && n % recover_every == 1)
     {
-      CHECK(!has_result(r));
       /* what was cached before the failure serves; without an input one must be set again */
       t.last = 0;
       status = aqr_remesher_run(r, &o);
@@ -157,9 +162,9 @@ AQR_TEST(a_cancel_at_any_step_stops_and_the_next_run_works)
       size_t steps = t.steps;
       bool last = status == AQR_OK && steps == n; /* the step that says that all is done asks no more */
       CHECK(steps <= n && (steps == n ? status == AQR_CANCELLED || last : status == AQR_OK));
-      if (status == AQR_CANCELLED)
+      CHECK(status == AQR_OK || !has_result(r));
+      if (status == AQR_CANCELLED && n % recover_every == 1)
       {
-        CHECK(!has_result(r));
         t.last = 0;
         status = aqr_remesher_run(r, &o);
         t.last = 0;

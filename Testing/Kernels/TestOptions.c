@@ -38,7 +38,7 @@ AQR_TEST(the_number_of_points_falls_as_the_tolerance_grows)
   CHECK(again(r, o) == AQR_OK);
   size_t fine = points_of(r);
   printf("tolerance 0.004: %zu points, 0.001: %zu\n", coarse, fine);
-  CHECK(fine > 2.5 * (double)coarse && fine < 6 * (double)coarse); /* one over the tolerance */
+  CHECK(2 * fine > 5 * coarse && fine < 6 * coarse); /* one over the tolerance */
   CHECK(fabs(aqr_remesher_report(r)->tolerance - 0.001) < 1e-12);
   aqr_remesher_free(r);
   shape_free(&m);
