@@ -16,6 +16,7 @@ enum
   cookie = 0x41515231,
   most_attempts = 9, /* at meeting a target number of points ... */
   fine_attempts = 4, /* ... of which the first ask for better than what counts as met */
+  most_retries = 4,  /* at a tolerance whose lines lost the topology */
   most_cuts = 24     /* rounds of arcs that keep the topology */
 };
 
@@ -26,6 +27,9 @@ static const double sharpest = 2; /* over the averaging radius: bends sharper th
 static const double least_radius = 0.001;
 static const double usual_excess = 1.4; /* of points over the prediction: lines end, and what ends costs points */
 static const double target_accuracy = 0.03;
+static const double retry = 0.97; /* of the tolerance before */
+static const double lost_topology =
+  10; /* more than any miss: such an attempt serves only where all others lost it too */
 static const double missed_accuracy = 0.045; /* of the logarithm: within 5 % */
 
 static const char* const stage_names[AQR_STAGES] = { "surface", "features", "curvature", "direction field", "spacing",
@@ -305,6 +309,23 @@ done:
   return status;
 }
 
+/* Whether the mesh has the Euler number of the cleaned input. Every region between the lines was made a disk, but that
+ * count of regions is one over microscopic triangles; this one is of the result. */
+static bool keeps_topology(const aqr_remesher* r)
+{
+  const aqr_polygon_mesh* m = &r->polygons;
+  const aqr_surface* s = &r->base;
+  long long chi = 0, wanted = (long long)s->n_points + (long long)s->n_faces;
+  for (size_t h = 0; h < m->n_half_edges; h += 2)
+    chi -= m->half_edges[h].from != AQR_NONE;
+  for (size_t f = 0; f < m->n_faces; f++)
+    chi += m->faces[f] != AQR_NONE;
+  chi += (long long)count_vertices(m);
+  for (aqr_index h = 0; h < 3 * s->n_faces; h++)
+    wanted -= s->twin[h] == AQR_NONE || h < s->twin[h];
+  return chi == wanted;
+}
+
 /* Lines, network and faces for one tolerance. */
 static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double tolerance)
 {
@@ -372,16 +393,19 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
   aqr_status status = AQR_OK;
   double goal = log((double)o->target_points), ask = goal - log(usual_excess), x[2] = { 0, 0 }, y[2] = { 0, 0 };
   outcome best = { .report = r->report, .error = INFINITY };
-  double tolerance = 0, before = 0;
+  double tolerance = 0, before = 0, stretch = 0;
   int known = 0;
   for (int i = 0; i < most_attempts; i++)
   {
     before = tolerance;
+    stretch = r->sizing.stretch;
     AQR_TRY(aqr_sizing_solve(c, r->surface, exp(ask), &r->sizing, &tolerance));
-    if (i > 0 && !differ(tolerance, before))
+    if (i > 0 && !differ(tolerance, before) && !differ(r->sizing.stretch, stretch))
       break; /* as many or as few as the input can carry */
     AQR_TRY(attempt(r, o, tolerance));
     double made = log(fmax(1, (double)count_vertices(&r->polygons))), error = fabs(made - goal);
+    if (o->preserve_topology && !keeps_topology(r))
+      error += lost_topology;
     if (error < best.error)
     {
       forget_outcome(c, &best);
@@ -514,7 +538,17 @@ static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
   if (o->density == AQR_DENSITY_POINTS)
     return meet_target(r, o);
   aqr_status status = aqr_sizing_set(&r->context, r->surface, o->tolerance, &r->sizing);
-  return status == AQR_OK ? attempt(r, o, o->tolerance) : status;
+  if (status == AQR_OK)
+    status = attempt(r, o, o->tolerance);
+  double tolerance = o->tolerance;
+  for (int i = 1; status == AQR_OK && i < most_retries && o->preserve_topology && !keeps_topology(r); i++)
+  {
+    tolerance *= retry;
+    status = aqr_sizing_set(&r->context, r->surface, tolerance, &r->sizing);
+    if (status == AQR_OK)
+      status = attempt(r, o, tolerance);
+  }
+  return status;
 }
 
 static aqr_status run_results(aqr_remesher* r)
