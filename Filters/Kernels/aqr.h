@@ -63,9 +63,9 @@ extern "C"
     AQR_INDEX_OUT_OF_RANGE, /**< a triangle names a point that does not exist */
     AQR_DEGENERATE_INPUT,   /**< no triangle of positive area: all points coincident or collinear */
     AQR_TOO_LARGE,          /**< more triangles than the index type can hold */
-    AQR_BAD_OPTION, /**< an option is NaN or outside its range; see aqr_remesher_message() */
-    AQR_NO_INPUT,   /**< run before set_input */
-    AQR_INTERNAL    /**< an invariant of the library did not hold: a defect, please report it */
+    AQR_BAD_OPTION,         /**< an option is NaN or outside its range; see aqr_remesher_message() */
+    AQR_NO_INPUT,           /**< run before set_input */
+    AQR_INTERNAL            /**< an invariant of the library did not hold: a defect, please report it */
   } aqr_status;
 
   /** One English sentence without a newline; never NULL. */
@@ -83,11 +83,8 @@ extern "C"
     int (*progress)(void* user, double fraction, const char* stage);
     /** Call body(data, begin, end) over disjoint ranges that cover [0, count), on any threads, in
      * any order. */
-    void (*parallel_for)(void* user,
-      size_t count,
-      size_t grain,
-      void (*body)(void* data, size_t begin, size_t end),
-      void* data);
+    void (*parallel_for)(
+      void* user, size_t count, size_t grain, void (*body)(void* data, size_t begin, size_t end), void* data);
   } aqr_hooks;
 
   /** The input surface, read during set_input only. */
@@ -103,39 +100,36 @@ extern "C"
   /** What asks for the density of the output. */
   typedef enum aqr_density
   {
-    AQR_DENSITY_TOLERANCE =
-      0, /**< lines spaced so that a chord departs from the surface by `tolerance` */
-    AQR_DENSITY_POINTS = 1 /**< the tolerance that gives `target_points` */
+    AQR_DENSITY_TOLERANCE = 0, /**< lines spaced so that a chord departs from the surface by `tolerance` */
+    AQR_DENSITY_POINTS = 1     /**< the tolerance that gives `target_points` */
   } aqr_density;
 
   /** All parameters. Lengths are fractions of the diagonal of the input's bounding box, angles are
    * degrees. */
   typedef struct aqr_options
   {
-    uint32_t cookie;       /**< set by aqr_default_options() */
-    aqr_density density;   /**< AQR_DENSITY_TOLERANCE */
-    double tolerance;      /**< [1e-7, 0.1], 0.0005 */
-    int64_t target_points; /**< [4, 2^31), 5000; met within 5 % where the input can carry it */
+    uint32_t cookie;             /**< set by aqr_default_options() */
+    aqr_density density;         /**< AQR_DENSITY_TOLERANCE */
+    double tolerance;            /**< [1e-7, 0.1], 0.0005 */
+    int64_t target_points;       /**< [4, 2^31), 5000; met within 5 % where the input can carry it */
     const double* density_scale; /**< NULL, or one factor per input point, > 0: points per area are
                                     multiplied by it */
-    double
-      curvature_radius; /**< [0, 0.2], 0.01: averaging ball of the curvature tensors (paper 2) */
-    int smoothing_iterations; /**< [0, 1000], 5: confidence-weighted smoothing of the tensors
-                                 (paper 4.1) */
-    double confidence_angle;  /**< [0, 90], 30: directions inside a face that differ by more are not
-                                 trusted (4.1) */
-    int feature_lines;        /**< 0 or 1, 1: creases become lines (paper 3) */
-    double
-      feature_angle; /**< (0, 180], 40: dihedral deviation from flat that makes an edge a crease */
-    int boundary_lines;     /**< 0 or 1, 1: boundary loops become lines; 0 lets the border be cut
-                               coarsely */
-    double largest_spacing; /**< [1e-4, 1], 0.05: no two neighbouring lines are meant to be farther
-                               apart (3.2) */
-    int largest_valence;    /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
-    int convex_partition;   /**< 0 or 1, 1: concave faces are split (paper 5.2) */
-    int preserve_topology;  /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may
-                               vanish */
-    uint32_t seed;          /**< 0: breaks ties between seeds of equal rank */
+    double curvature_radius;     /**< [0, 0.2], 0.01: averaging ball of the curvature tensors (paper 2) */
+    int smoothing_iterations;    /**< [0, 1000], 5: confidence-weighted smoothing of the tensors
+                                    (paper 4.1) */
+    double confidence_angle;     /**< [0, 90], 30: directions inside a face that differ by more are not
+                                    trusted (4.1) */
+    int feature_lines;           /**< 0 or 1, 1: creases become lines (paper 3) */
+    double feature_angle;        /**< (0, 180], 40: dihedral deviation from flat that makes an edge a crease */
+    int boundary_lines;          /**< 0 or 1, 1: boundary loops become lines; 0 lets the border be cut
+                                    coarsely */
+    double largest_spacing;      /**< [1e-4, 1], 0.05: no two neighbouring lines are meant to be farther
+                                    apart (3.2) */
+    int largest_valence;         /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
+    int convex_partition;        /**< 0 or 1, 1: concave faces are split (paper 5.2) */
+    int preserve_topology;       /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may
+                                    vanish */
+    uint32_t seed;               /**< 0: breaks ties between seeds of equal rank */
   } aqr_options;
 
   AQR_API aqr_options aqr_default_options(void);
@@ -194,8 +188,7 @@ extern "C"
     const double* normals;       /**< 3 per point, unit */
     const double* min_direction; /**< 3 per point, unit, tangent */
     const double* max_direction; /**< 3 per point, unit, tangent */
-    const double*
-      min_curvature; /**< per point, <= max_curvature, one over the input's unit of length */
+    const double* min_curvature; /**< per point, <= max_curvature, one over the input's unit of length */
     const double* max_curvature;
     const float* point_confidence; /**< per point, [0,1] (paper 4.1) */
     size_t number_of_triangles;
@@ -216,8 +209,7 @@ extern "C"
     const double* curvature;   /**< per point: normal curvature across the line */
     const double* arc_length;  /**< per point, from the line's first point */
     const aqr_index* triangle; /**< per point: triangle of aqr_field_view it lies on */
-    const uint8_t*
-      isotropic; /**< per point: 1 in a stretch that ignores the tensor field (paper 4.2) */
+    const uint8_t* isotropic;  /**< per point: 1 in a stretch that ignores the tensor field (paper 4.2) */
   } aqr_lines_view;
 
   /** What was repaired in the input, and what the run did. All counts. */
@@ -231,12 +223,12 @@ extern "C"
     size_t split_points;         /**< non-manifold points cut apart */
     size_t flipped_triangles;    /**< turned to agree with their neighbours */
     size_t unorientable_edges;   /**< cut because no orientation agrees across them */
-    size_t refined_points; /**< added to halve edges longer than what lines need (paper 3.2) */
-    size_t feature_edges;  /**< input edges on feature lines */
-    size_t boundary_loops; /**< of the cleaned input */
-    size_t components;     /**< of the cleaned input */
-    size_t lines;          /**< traced */
-    size_t line_samples;   /**< edge crossings of all lines */
+    size_t refined_points;       /**< added to halve edges longer than what lines need (paper 3.2) */
+    size_t feature_edges;        /**< input edges on feature lines */
+    size_t boundary_loops;       /**< of the cleaned input */
+    size_t components;           /**< of the cleaned input */
+    size_t lines;                /**< traced */
+    size_t line_samples;         /**< edge crossings of all lines */
     size_t proximity_queries;
     size_t topology_cuts;        /**< lines added so that every region is a disk */
     size_t coarsened_components; /**< components that carried no lines and were decimated instead */

@@ -20,9 +20,7 @@ typedef struct aqr_context
 } aqr_context;
 
 /* Memory. Zero bytes give a valid pointer. Sizes are told back so that the total is known. */
-void* aqr_alloc(aqr_context* c,
-  size_t count,
-  size_t size); /* NULL when out of memory or on overflow */
+void* aqr_alloc(aqr_context* c, size_t count, size_t size);  /* NULL when out of memory or on overflow */
 void* aqr_alloc0(aqr_context* c, size_t count, size_t size); /* zero-filled */
 void aqr_release(aqr_context* c, void* p, size_t count, size_t size);
 
@@ -34,7 +32,7 @@ void aqr_release(aqr_context* c, void* p, size_t count, size_t size);
 /* Grows *p to at least `need` elements of `size` bytes, doubling; false when out of memory (*p
  * stays valid). */
 bool aqr_reserve(aqr_context* c, void** p, size_t* capacity, size_t need, size_t size);
-#define AQR_RESERVE(c, p, capacity, need)                                                          \
+#define AQR_RESERVE(c, p, capacity, need)                                                                              \
   (((need) <= (capacity) && (p)) || aqr_reserve(c, (void**)&(p), &(capacity), need, sizeof *(p)))
 
 /* Reports that `fraction` of the running stage is done; false when the caller wants to stop.
@@ -46,30 +44,26 @@ double aqr_seconds(void);
 
 /* Runs body over [0, count) through the parallel_for hook, in blocks between which progress moves
  * from `from` to `to` of the stage and cancellation is heard. */
-aqr_status aqr_parallel(aqr_context* c,
-  size_t count,
-  void (*body)(void* data, size_t begin, size_t end),
-  void* data,
-  double from,
-  double to);
+aqr_status aqr_parallel(
+  aqr_context* c, size_t count, void (*body)(void* data, size_t begin, size_t end), void* data, double from, double to);
 
 /* Leaves through label `done` with `status` set when the call fails. */
-#define AQR_TRY(call)                                                                              \
-  do                                                                                               \
-  {                                                                                                \
-    status = (call);                                                                               \
-    if (status != AQR_OK)                                                                          \
-      goto done;                                                                                   \
+#define AQR_TRY(call)                                                                                                  \
+  do                                                                                                                   \
+  {                                                                                                                    \
+    status = (call);                                                                                                   \
+    if (status != AQR_OK)                                                                                              \
+      goto done;                                                                                                       \
   } while (0)
 
-#define AQR_REQUIRE(condition, failure)                                                            \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      status = (failure);                                                                          \
-      goto done;                                                                                   \
-    }                                                                                              \
+#define AQR_REQUIRE(condition, failure)                                                                                \
+  do                                                                                                                   \
+  {                                                                                                                    \
+    if (!(condition))                                                                                                  \
+    {                                                                                                                  \
+      status = (failure);                                                                                              \
+      goto done;                                                                                                       \
+    }                                                                                                                  \
   } while (0)
 
 #endif

@@ -10,12 +10,8 @@
  * from flat above `angle` degrees, grown along the crease by hysteresis to 0.6 of it, and chains
  * shorter than min_length (a fraction of the diagonal) or zigzagging (noise of a scan) left out.
  * Counts go to the report. */
-aqr_status aqr_features_detect(aqr_context* c,
-  const aqr_surface* s,
-  double angle,
-  double min_length,
-  uint8_t* is_crease,
-  aqr_report* report);
+aqr_status aqr_features_detect(
+  aqr_context* c, const aqr_surface* s, double angle, double min_length, uint8_t* is_crease, aqr_report* report);
 
 /* A maximal run of seam or boundary edges between two nodes of the graph, or a closed loop. */
 typedef struct aqr_chain
@@ -40,10 +36,7 @@ typedef struct aqr_chains
 /* Collects the seams and boundaries of a cut surface into chains. Nodes: points where other than
  * two such edges meet, or where two meet at a turn sharper than corner_angle degrees. A seam is
  * listed once (one of its two sides). */
-aqr_status aqr_chains_build(aqr_context* c,
-  const aqr_surface* s,
-  double corner_angle,
-  aqr_chains* chains);
+aqr_status aqr_chains_build(aqr_context* c, const aqr_surface* s, double corner_angle, aqr_chains* chains);
 void aqr_chains_free(aqr_context* c, aqr_chains* chains);
 
 #endif

@@ -40,7 +40,7 @@ typedef struct aqr_probe
   aqr_index face; /* where p lies */
   vec3 p, direction;
   double radius;
-  bool any;        /* the first segment found inside the radius will do */
+  bool any;       /* the first segment found inside the radius will do */
   aqr_index self; /* segments of this line count only where the line has come back: seen from `arc`, farther along the
                      line than across the surface */
   double arc;

@@ -14,7 +14,9 @@ enum
 {
   most_rounds = 8,
   most_seeds_per_line = 1 << 20,
-  score_levels = 64
+  score_levels = 64,
+  most_failures = 50, /* growths that come to nothing, per line kept ... */
+  free_failures = 64  /* ... and these many lines more: the bound of the work along threads without area */
 };
 
 static const double seed_distance = 0.6;  /* of the spacing: nearer than this to a line of its family no line begins */
@@ -54,6 +56,7 @@ typedef struct sampler
   size_t n_parents, parent_capacity;
   double* places; /* marks of the parent being asked, in order */
   size_t n_places, place_capacity;
+  size_t n_failed; /* growths that came to nothing */
 } sampler;
 
 /* ---- chains ---- */
@@ -231,7 +234,10 @@ static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
   aqr_grower* g = &m->grower;
   *id = AQR_NONE;
   if (!worth_keeping(&g->line, g->samples))
+  {
+    m->n_failed++;
     return AQR_OK;
+  }
   *id = (aqr_index)m->lines->n_lines;
   g->line.partner[0] = partner;
   aqr_status status = aqr_lines_add(m->c, m->lines, m->s, &g->line, g->samples);
@@ -291,6 +297,8 @@ static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double di
 {
   bool allowed;
   aqr_index id;
+  if (m->n_failed > most_failures * (m->lines->n_lines + free_failures))
+    return AQR_OK;
   aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
   if (status != AQR_OK || !allowed)
     return status;

@@ -27,8 +27,10 @@ void StartAnisotropicQuadRemesherPlugin()
   const int minor = vtkSMProxyManager::GetVersionMinor();
   if (major != PARAVIEW_VERSION_MAJOR || minor != PARAVIEW_VERSION_MINOR)
   {
-    vtkGenericWarningMacro("AnisotropicQuadRemesherPlugin was built for ParaView " PARAVIEW_VERSION ", and this is ParaView "
-      << major << "." << minor << ". Build the plugin against this ParaView; with the present one the filter may crash.");
+    vtkGenericWarningMacro(
+      "AnisotropicQuadRemesherPlugin was built for ParaView " PARAVIEW_VERSION ", and this is ParaView "
+      << major << "." << minor
+      << ". Build the plugin against this ParaView; with the present one the filter may crash.");
     return;
   }
   auto* presets = vtkSMTransferFunctionPresets::GetInstance();

@@ -18,52 +18,52 @@ typedef struct aqr_test
 static aqr_test* aqr_tests;
 static int aqr_failures;
 
-#define AQR_TEST(test_name)                                                                        \
-  static void test_name(void);                                                                     \
-  static aqr_test entry_##test_name = { #test_name, test_name, NULL };                             \
-  __attribute__((constructor)) static void register_##test_name(void)                              \
-  {                                                                                                \
-    entry_##test_name.next = aqr_tests;                                                            \
-    aqr_tests = &entry_##test_name;                                                                \
-  }                                                                                                \
+#define AQR_TEST(test_name)                                                                                            \
+  static void test_name(void);                                                                                         \
+  static aqr_test entry_##test_name = { #test_name, test_name, NULL };                                                 \
+  __attribute__((constructor)) static void register_##test_name(void)                                                  \
+  {                                                                                                                    \
+    entry_##test_name.next = aqr_tests;                                                                                \
+    aqr_tests = &entry_##test_name;                                                                                    \
+  }                                                                                                                    \
   static void test_name(void)
 
-#define CHECK(condition)                                                                           \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      printf("%s:%d: failed: %s\n", __FILE__, __LINE__, #condition);                               \
-      aqr_failures++;                                                                              \
-    }                                                                                              \
+#define CHECK(condition)                                                                                               \
+  do                                                                                                                   \
+  {                                                                                                                    \
+    if (!(condition))                                                                                                  \
+    {                                                                                                                  \
+      printf("%s:%d: failed: %s\n", __FILE__, __LINE__, #condition);                                                   \
+      aqr_failures++;                                                                                                  \
+    }                                                                                                                  \
   } while (0)
 
 /* Also prints the measured value. */
-#define CHECK_BELOW(value, bound)                                                                  \
-  do                                                                                               \
-  {                                                                                                \
-    double measured_ = (value), bound_ = (bound);                                                  \
-    printf("%s = %g (bound %g)\n", #value, measured_, bound_);                                     \
-    if (!(measured_ < bound_))                                                                     \
-    {                                                                                              \
-      printf("%s:%d: failed: %s < %s\n", __FILE__, __LINE__, #value, #bound);                      \
-      aqr_failures++;                                                                              \
-    }                                                                                              \
+#define CHECK_BELOW(value, bound)                                                                                      \
+  do                                                                                                                   \
+  {                                                                                                                    \
+    double measured_ = (value), bound_ = (bound);                                                                      \
+    printf("%s = %g (bound %g)\n", #value, measured_, bound_);                                                         \
+    if (!(measured_ < bound_))                                                                                         \
+    {                                                                                                                  \
+      printf("%s:%d: failed: %s < %s\n", __FILE__, __LINE__, #value, #bound);                                          \
+      aqr_failures++;                                                                                                  \
+    }                                                                                                                  \
   } while (0)
 
-#define AQR_TEST_MAIN                                                                              \
-  int main(int argc, char** argv)                                                                  \
-  {                                                                                                \
-    int found = 0;                                                                                 \
-    for (aqr_test* t = aqr_tests; t; t = t->next)                                                  \
-      if (argc < 2 || strcmp(argv[1], t->name) == 0)                                               \
-      {                                                                                            \
-        found++;                                                                                   \
-        t->run();                                                                                  \
-      }                                                                                            \
-    if (!found)                                                                                    \
-      printf("no test named %s\n", argc > 1 ? argv[1] : "at all");                                 \
-    return found && !aqr_failures ? 0 : 1;                                                         \
+#define AQR_TEST_MAIN                                                                                                  \
+  int main(int argc, char** argv)                                                                                      \
+  {                                                                                                                    \
+    int found = 0;                                                                                                     \
+    for (aqr_test* t = aqr_tests; t; t = t->next)                                                                      \
+      if (argc < 2 || strcmp(argv[1], t->name) == 0)                                                                   \
+      {                                                                                                                \
+        found++;                                                                                                       \
+        t->run();                                                                                                      \
+      }                                                                                                                \
+    if (!found)                                                                                                        \
+      printf("no test named %s\n", argc > 1 ? argv[1] : "at all");                                                     \
+    return found && !aqr_failures ? 0 : 1;                                                                             \
   }
 
 #endif
