@@ -86,6 +86,17 @@ static aqr_status input_and_run(aqr_remesher* r, const aqr_input* input, const a
   return status == AQR_OK ? aqr_remesher_run(r, o) : status;
 }
 
+/* What was cached before a fault serves; without an input one must be set again. */
+static void check_next_run(aqr_remesher* r, trial* t, const aqr_input* input, const aqr_options* o)
+{
+  t->last = 0;
+  aqr_status status = aqr_remesher_run(r, o);
+  t->last = 0;
+  if (status == AQR_NO_INPUT)
+    status = input_and_run(r, input, o);
+  CHECK(status == AQR_OK && is_valid(r));
+}
+
 enum
 {
   recover_every = 6 /* failures: the next run is tried */
@@ -114,13 +125,7 @@ static void fail_everywhere(int by_points, size_t* visited)
     CHECK(!r || !failed || !has_result(r));
     if (r && failed && n % recover_every == 1)
     {
-      /* what was cached before the failure serves; without an input one must be set again */
-      t.last = 0;
-      status = aqr_remesher_run(r, &o);
-      t.last = 0;
-      if (status == AQR_NO_INPUT)
-        status = input_and_run(r, &input, &o);
-      CHECK(status == AQR_OK && is_valid(r));
+      check_next_run(r, &t, &input, &o);
     }
     aqr_remesher_free(r);
     CHECK(t.held == 0);
@@ -165,12 +170,7 @@ AQR_TEST(a_cancel_at_any_step_stops_and_the_next_run_works)
       CHECK(status == AQR_OK || !has_result(r));
       if (status == AQR_CANCELLED && n % recover_every == 1)
       {
-        t.last = 0;
-        status = aqr_remesher_run(r, &o);
-        t.last = 0;
-        if (status == AQR_NO_INPUT)
-          status = input_and_run(r, &input, &o);
-        CHECK(status == AQR_OK && is_valid(r));
+        check_next_run(r, &t, &input, &o);
       }
       aqr_remesher_free(r);
       CHECK(t.held == 0);
