@@ -25,7 +25,7 @@ static const double corner_angle = 45;    /* a chain turning more sharply has a 
 static const double shortest_feature = 0.02;
 static const double sharpest = 2; /* over the averaging radius: bends sharper than that it cannot tell from noise */
 static const double least_radius = 0.001;
-static const double usual_excess = 1.4; /* of points over the prediction: lines end, and what ends costs points */
+static const double largest_excess = 2.2; /* of points over the prediction: lines are mostly nearer than the spacing */
 static const double target_accuracy = 0.03;
 static const double retry = 0.97; /* of the tolerance before */
 static const double lost_topology =
@@ -326,18 +326,20 @@ static bool keeps_topology(const aqr_remesher* r)
   return chi == wanted;
 }
 
-/* Lines, network and faces for one tolerance. */
-static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double tolerance)
+/* Lines, network and faces for one tolerance; a smaller one where that gives fewer than `points`. */
+static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double tolerance, double points, aqr_reached* reached)
 {
   aqr_context* c = &r->context;
   aqr_status status = AQR_OK;
   aqr_polygon_mesh_free(c, &r->polygons);
   aqr_lines_free(c, &r->lines);
-  r->report.tolerance = tolerance;
   r->report.topology_cuts = r->report.coarsened_components = 0;
   double began = begin_stage(r, AQR_STAGE_LINES);
-  aqr_sampling_options sampling = { cosine(o->confidence_angle), tolerance, o->boundary_lines != 0, o->seed };
-  status = aqr_sample_lines(c, r->surface, &r->field, &r->sizing, &r->chains, &sampling, &r->lines, &r->report);
+  aqr_sampling_options sampling = { cosine(o->confidence_angle), tolerance, points, o->boundary_lines != 0, o->seed };
+  status =
+    aqr_sample_lines(c, r->surface, &r->field, &r->sizing, &r->chains, &sampling, &r->lines, reached, &r->report);
+  tolerance /= reached->finer * reached->finer;
+  r->report.tolerance = tolerance;
   end_stage(r, AQR_STAGE_LINES, began);
   if (status != AQR_OK)
     return status;
@@ -384,26 +386,27 @@ static void exchange(aqr_remesher* r, outcome* kept, double error)
   *kept = now;
 }
 
-/* Searches the tolerance that gives the target: the number asked of the prediction is corrected by what came out, in
- * proportion first, then by the chord through the two attempts nearest to the target on a logarithmic scale. The best
- * attempt is kept. */
+/* Searches the tolerance that gives the target. The spacing first taken is one whose lines are seldom too many, and
+ * shrinks as lines come; what was expected of the lines is corrected by what came of them. The best attempt is kept. */
 static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
 {
   aqr_context* c = &r->context;
   aqr_status status = AQR_OK;
-  double goal = log((double)o->target_points), ask = goal - log(usual_excess), x[2] = { 0, 0 }, y[2] = { 0, 0 };
+  const double goal = (double)o->target_points;
+  double ask = goal / largest_excess, points = goal, before[3] = { 0, 0, 0 };
   outcome best = { .report = r->report, .error = INFINITY };
-  double tolerance = 0, before = 0, stretch = 0;
-  int known = 0;
   for (int i = 0; i < most_attempts; i++)
   {
-    before = tolerance;
-    stretch = r->sizing.stretch;
-    AQR_TRY(aqr_sizing_solve(c, r->surface, exp(ask), &r->sizing, &tolerance));
-    if (i > 0 && !differ(tolerance, before) && !differ(r->sizing.stretch, stretch))
+    double start;
+    aqr_reached reached;
+    AQR_TRY(aqr_sizing_solve(c, r->surface, ask, &r->sizing, &start));
+    if (i > 0 && !differ(start, before[0]) && !differ(r->sizing.stretch, before[1]) && !differ(points, before[2]))
       break; /* as many or as few as the input can carry */
-    AQR_TRY(attempt(r, o, tolerance));
-    double made = log(fmax(1, (double)count_vertices(&r->polygons))), error = fabs(made - goal);
+    before[0] = start;
+    before[1] = r->sizing.stretch;
+    before[2] = points;
+    AQR_TRY(attempt(r, o, start, points, &reached));
+    double made = fmax(1, (double)count_vertices(&r->polygons)), error = fabs(log(made / goal));
     if (o->preserve_topology && !keeps_topology(r))
       error += lost_topology;
     if (error < best.error)
@@ -413,12 +416,12 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
     }
     if (error < (i < fine_attempts ? target_accuracy : missed_accuracy))
       break;
-    /* keep the two attempts nearest to the goal */
-    int slot = known < 2 ? known++ : fabs(y[0] - goal) > fabs(y[1] - goal) ? 0 : 1;
-    x[slot] = ask;
-    y[slot] = made;
-    double slope = known == 2 && fabs(x[1] - x[0]) > 1e-9 ? (y[1] - y[0]) / (x[1] - x[0]) : 1;
-    ask += (goal - made) / fmin(2, fmax(0.25, slope));
+    points = fmax(1, goal - (made - reached.points));
+    double excess = points / fmax(1, reached.points);
+    if (log(excess) > target_accuracy) /* too much to be made up for by shrinking */
+      ask *= excess;
+    else /* begins below the points wanted, however little it then shrinks */
+      ask *= fmin(1, 0.9 * excess * reached.finer * reached.finer);
   }
   best.report.target_missed = best.error > missed_accuracy;
   exchange(r, &best, 0);
@@ -537,16 +540,17 @@ static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
 {
   if (o->density == AQR_DENSITY_POINTS)
     return meet_target(r, o);
+  aqr_reached reached;
+  double tolerance = o->tolerance;
   aqr_status status = aqr_sizing_set(&r->context, r->surface, o->tolerance, &r->sizing);
   if (status == AQR_OK)
-    status = attempt(r, o, o->tolerance);
-  double tolerance = o->tolerance;
+    status = attempt(r, o, o->tolerance, 0, &reached);
   for (int i = 1; status == AQR_OK && i < most_retries && o->preserve_topology && !keeps_topology(r); i++)
   {
     tolerance *= retry;
     status = aqr_sizing_set(&r->context, r->surface, tolerance, &r->sizing);
     if (status == AQR_OK)
-      status = attempt(r, o, tolerance);
+      status = attempt(r, o, tolerance, 0, &reached);
   }
   return status;
 }

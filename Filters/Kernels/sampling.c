@@ -15,6 +15,7 @@ enum
   most_rounds = 8,
   most_seeds_per_line = 1 << 20,
   score_levels = 64,
+  most_passes = 12,   /* at reaching the number of points asked for */
   most_failures = 50, /* growths that come to nothing, per line kept ... */
   free_failures = 64  /* ... and these many lines more: the bound of the work along threads without area */
 };
@@ -23,6 +24,9 @@ static const double seed_distance = 0.6;  /* of the spacing: nearer than this to
 static const double cover_distance = 0.8; /* of the spacing: a place farther than this from all lines gets a seed */
 static const double least_length = 1.5;   /* spacings: a line shorter than this is not worth its two T-joints */
 static const double least_turning_length = 6; /* the same for a line that meets itself at both ends */
+static const double damping = 0.8;    /* of the step to the number of points asked for: what is overshot is lost */
+static const double enough = 0.99;    /* of that number */
+static const double most_finer = 1.5; /* than the sizing: beyond, its bounds would no longer hold */
 static const double node_distance =
   0.35; /* of the spacing: a line does not go on over a seam nearer to another's end */
 
@@ -46,7 +50,7 @@ typedef struct sampler
   aqr_context* c;
   const aqr_surface* s;
   const aqr_field* field;
-  const aqr_sizing* sizing;
+  aqr_sizing* sizing;
   const aqr_sampling_options* options;
   aqr_lines* lines;
   aqr_grower grower;
@@ -57,6 +61,8 @@ typedef struct sampler
   double* places; /* marks of the parent being asked, in order */
   size_t n_places, place_capacity;
   size_t n_failed; /* growths that came to nothing */
+  double points;   /* expected of the lines: their crossings, and on chains their ends or the chain's own spacing */
+  double goal;     /* no further seeds once as many are expected */
 } sampler;
 
 /* ---- chains ---- */
@@ -155,13 +161,22 @@ static bool on_chain(const sampler* m, const aqr_sample* at, aqr_index* chain, d
 
 /* ---- marks ---- */
 
+static double points_on(const sampler* m, aqr_index id)
+{
+  const aqr_line* line = &m->lines->lines[id];
+  double marks = m->parents[id].n_marks, own = (double)m->lines->samples[line->first + line->count - 1].sigma;
+  return line->is_chain ? fmax(marks, own) : marks / 2; /* a crossing is marked on both its lines */
+}
+
 static aqr_status add_mark(sampler* m, aqr_index line, double sigma)
 {
   if (!AQR_RESERVE(m->c, m->marks, m->mark_capacity, m->n_marks + 1))
     return AQR_OUT_OF_MEMORY;
   m->marks[m->n_marks] = (mark){ sigma, m->parents[line].newest };
   m->parents[line].newest = (aqr_index)m->n_marks++;
+  m->points -= points_on(m, line);
   m->parents[line].n_marks++;
+  m->points += points_on(m, line);
   return AQR_OK;
 }
 
@@ -297,7 +312,7 @@ static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double di
 {
   bool allowed;
   aqr_index id;
-  if (m->n_failed > most_failures * (m->lines->n_lines + free_failures))
+  if (m->points >= m->goal || m->n_failed > most_failures * (m->lines->n_lines + free_failures))
     return AQR_OK;
   aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
   if (status != AQR_OK || !allowed)
@@ -324,7 +339,7 @@ static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double di
 static aqr_status seed_on_chain(sampler* m, aqr_index h, double t, double distance)
 {
   const aqr_surface* s = m->s;
-  for (unsigned side = 0; side < 2; side++)
+  for (unsigned side = 0; side < 2 && m->points < m->goal; side++)
   {
     aqr_index k = side ? aqr_any_twin(s, h) : h;
     if (k == AQR_NONE)
@@ -419,7 +434,7 @@ static aqr_status ask_parent(sampler* m, aqr_index id)
   const aqr_line line = m->lines->lines[id];
   double end = (double)m->lines->samples[line.first + line.count - 1].sigma;
   aqr_status status = AQR_OK;
-  if (m->parents[id].asked == m->parents[id].n_marks + 1)
+  if (m->points >= m->goal || m->parents[id].asked == m->parents[id].n_marks + 1)
     return AQR_OK;
   m->parents[id].asked = m->parents[id].n_marks + 1;
   AQR_TRY(collect_places(m, id));
@@ -469,6 +484,50 @@ static aqr_status fill_gaps(sampler* m, size_t first)
     }
     if (m->lines->n_lines == before)
       break;
+  }
+done:
+  return status;
+}
+
+/* ---- as many points as asked for ---- */
+
+static void count_points(sampler* m)
+{
+  m->points = 0;
+  for (size_t i = 0; i < m->lines->n_lines; i++)
+    m->points += points_on(m, (aqr_index)i);
+}
+
+/* Makes the spacing smaller everywhere; positions along lines are in spacings and grow. */
+static void shrink_spacing(sampler* m, double factor)
+{
+  aqr_lines* l = m->lines;
+  float up = (float)factor, down = (float)(1 / factor);
+  for (size_t i = 0; i < 2 * m->sizing->n_points; i++)
+    m->sizing->spacing[i] *= down;
+  for (size_t i = 0; i < l->n_samples; i++)
+    l->samples[i].sigma *= up;
+  for (size_t i = 0; i < m->n_marks; i++)
+    m->marks[i].sigma *= factor;
+  for (size_t i = 0; i < m->n_parents; i++)
+    m->parents[i].asked = 0;
+  count_points(m);
+}
+
+/* Shrinks the spacing until the lines give the points asked for: the widest gaps are filled first, and no line is
+ * traced twice. */
+static aqr_status reach_points(sampler* m, double points, double* finer)
+{
+  aqr_status status = AQR_OK;
+  m->goal = points;
+  for (int i = 0; i < most_passes && m->points < enough * points; i++)
+  {
+    double factor = fmin(most_finer / *finer, pow(points / fmax(1, m->points), damping / 2));
+    if (factor <= 1)
+      break;
+    *finer *= factor;
+    shrink_spacing(m, factor);
+    AQR_TRY(fill_gaps(m, 0));
   }
 done:
   return status;
@@ -603,19 +662,26 @@ done:
   return status;
 }
 
-aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
-  const aqr_chains* chains, const aqr_sampling_options* options, aqr_lines* lines, aqr_report* report)
+aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_field* field, aqr_sizing* sizing,
+  const aqr_chains* chains, const aqr_sampling_options* options, aqr_lines* lines, aqr_reached* r, aqr_report* report)
 {
-  sampler m = { .c = c, .s = s, .field = field, .sizing = sizing, .options = options, .lines = lines };
+  sampler m = {
+    .c = c, .s = s, .field = field, .sizing = sizing, .options = options, .lines = lines, .goal = INFINITY
+  };
+  *r = (aqr_reached){ 1, 0 };
   aqr_status status = aqr_lines_init(c, s, lines);
   if (status != AQR_OK)
     return status;
   AQR_TRY(aqr_grower_init(c, s, field, sizing, lines, &m.grower));
   for (size_t i = 0; i < chains->n_chains; i++)
     AQR_TRY(add_chain(&m, chains, &chains->chains[i]));
+  count_points(&m);
   AQR_TRY(fill_gaps(&m, 0));
   AQR_TRY(cover_surface(&m));
   AQR_TRY(fill_gaps(&m, 0));
+  if (options->points > 0)
+    AQR_TRY(reach_points(&m, options->points, &r->finer));
+  r->points = m.points;
   report->lines = lines->n_lines;
   report->line_samples = lines->n_samples;
   report->proximity_queries += m.grower.cell.queries;

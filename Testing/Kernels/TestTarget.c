@@ -40,4 +40,14 @@ AQR_TEST(few_points_are_met_beyond_the_largest_spacing)
   shape_free(&m);
 }
 
+/* The spacing first taken is too wide by a factor that depends on the shape and on the target: it has to shrink until
+ * the lines are enough, and no further. */
+AQR_TEST(shrinking_stops_at_the_points_asked_for)
+{
+  shape m = shape_torus(60, 2);
+  for (int64_t asked = 250; asked < 3000; asked = asked * 3 / 2)
+    CHECK_BELOW(fabs(points_over_asked(&m, asked) - 1), 0.05);
+  shape_free(&m);
+}
+
 AQR_TEST_MAIN
