@@ -15,12 +15,13 @@ enum
   samples = 6
 };
 
-static const double hold_normal = 1e-3;  /* of a vertex in its place, relative to its part of the error */
-static const double hold_first = 5;      /* along the surface, where the error says little, in the first round */
-static const double hold_tangent = 0.25; /* and in the others */
-static const double least_gain = 0.9;    /* of the error: for less, no vertex leaves its lines */
-static const double farthest_move = 0.3; /* of the shortest edge at a vertex, in one round */
-static const double least_sine = 0.3;    /* of a corner's angle: a move does not make it smaller than that */
+static const double least_residual = 1e-3; /* of the first, squared: the solver stops */
+static const double hold_normal = 1e-3;    /* of a vertex in its place, relative to its part of the error */
+static const double hold_first = 5;        /* along the surface, where the error says little, in the first round */
+static const double hold_tangent = 0.25;   /* and in the others */
+static const double least_gain = 0.9;      /* of the error: for less, no vertex leaves its lines */
+static const double farthest_move = 0.3;   /* of the shortest edge at a vertex, in one round */
+static const double least_sine = 0.3;      /* of a corner's angle: a move does not make it smaller than that */
 static const double farthest_sample =
   0.5;                                  /* of the longest side: what is farther away is another part of the surface */
 static const double least_cosine = 0.3; /* between a polygon and the surface below it */
@@ -65,7 +66,8 @@ typedef struct fit
   vec3 *move, *residual, *direction, *image, *before;
   double* inverse; /* per vertex: of its own 3 x 3 block: xx yy zz xy xz yz; 0 where it stays */
   double* error;   /* per vertex: of its triangles, before the last move */
-  uint8_t* back;   /* per vertex: the last move was taken back */
+  uint8_t* back;   /* per vertex: the last move was damped or taken back */
+  uint8_t* folds;  /* per half-edge: the corner where it begins would fold */
   double hold;     /* along the surface */
   double worth;    /* what the error around a vertex may be after a move, relative to before */
   bool partly;     /* only triangles with vertices taken back are measured */
@@ -114,8 +116,9 @@ static aqr_status allocate(aqr_context* c, fit* f)
   f->inverse = AQR_NEW(c, double, 6 * n);
   f->error = AQR_NEW(c, double, n);
   f->back = AQR_NEW0(c, uint8_t, n);
+  f->folds = AQR_NEW(c, uint8_t, m->n_half_edges);
   return f->triangles && f->first_corner && f->corners && f->move && f->residual && f->direction && f->image &&
-             f->before && f->inverse && f->error && f->back
+             f->before && f->inverse && f->error && f->back && f->folds
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
 }
@@ -135,6 +138,7 @@ static void release(aqr_context* c, fit* f)
   AQR_DROP(c, f->inverse, 6 * n);
   AQR_DROP(c, f->error, n);
   AQR_DROP(c, f->back, n);
+  AQR_DROP(c, f->folds, f->m->n_half_edges);
 }
 
 /* Fans from the first corner; quads are cut at the shorter diagonal, as renderers that care do. */
@@ -338,7 +342,8 @@ static void multiply(void* data, size_t begin, size_t end)
 }
 
 /* Conjugate gradients with the blocks of single vertices as preconditioner. Sums run in the order of the vertices, so
- * that they do not depend on threads. The matrix is nearly a mass matrix: a fixed number of steps is enough. */
+ * that they do not depend on threads. The matrix is nearly a mass matrix: few steps are enough, and moves this near to
+ * the solution's are judged as well as its own. */
 static aqr_status solve(aqr_context* c, fit* f, double at)
 {
   aqr_status status = AQR_OK;
@@ -348,7 +353,7 @@ static aqr_status solve(aqr_context* c, fit* f, double at)
   for (size_t v = 0; v < n; v++)
     rho += v3_dot(f->residual[v], f->direction[v]);
   first = rho;
-  for (unsigned step = 0; step < solver_steps && rho > 1e-8 * first; step++)
+  for (unsigned step = 0; step < solver_steps && rho > least_residual * first; step++)
   {
     double energy = 0, next = 0;
     AQR_TRY(aqr_parallel(c, f->n_triangles, multiply_samples, f, at, at));
@@ -409,28 +414,49 @@ static double sine(const fit* f, const aqr_index* v, double moved)
   return n > 0 ? v3_dot(v3_cross(a, b), f->m->vertices[v[1]].normal) / n : -1;
 }
 
-/* Halves the moves around corners that would become too sharp, flat or turned over, in the end to nothing. */
-static void damp(fit* f)
+/* Which corners of vertices in question would become too sharp, flat or turned over. */
+static void find_folds(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  const aqr_polygon_mesh* m = f->m;
+  for (aqr_index h = (aqr_index)begin; h < end; h++)
+  {
+    f->folds[h] = 0;
+    if (aqr_pm_face(m, h) == AQR_NONE)
+      continue;
+    const aqr_index v[3] = { aqr_pm_from(m, aqr_pm_prev(m, h)), aqr_pm_from(m, h), aqr_pm_to(m, h) };
+    if (!f->back[v[0]] && !f->back[v[1]] && !f->back[v[2]])
+      continue;
+    double after = sine(f, v, 1);
+    f->folds[h] = after <= least_sine && after < sine(f, v, 0);
+  }
+}
+
+/* Halves the moves around corners that fold, in the end to nothing. */
+static aqr_status damp(aqr_context* c, fit* f, double at)
 {
   const aqr_polygon_mesh* m = f->m;
+  aqr_status status = AQR_OK;
+  memset(f->back, 1, m->n_vertices);
   for (unsigned round = 0; round < damp_rounds; round++)
   {
-    bool folded = false;
+    AQR_TRY(aqr_parallel(c, m->n_half_edges, find_folds, f, at, at));
+    memset(f->back, 0, m->n_vertices);
     for (aqr_index h = 0; h < m->n_half_edges; h++)
-    {
-      if (aqr_pm_face(m, h) == AQR_NONE)
-        continue;
-      const aqr_index v[3] = { aqr_pm_from(m, aqr_pm_prev(m, h)), aqr_pm_from(m, h), aqr_pm_to(m, h) };
-      double after = sine(f, v, 1);
-      if (after > least_sine || after >= sine(f, v, 0))
-        continue;
-      folded = true;
-      for (unsigned k = 0; k < 3; k++)
-        f->move[v[k]] = v3_scale(f->move[v[k]], round + 1 < damp_rounds ? 0.5 : 0);
-    }
+      if (f->folds[h])
+        f->back[aqr_pm_from(m, aqr_pm_prev(m, h))] = f->back[aqr_pm_from(m, h)] = f->back[aqr_pm_to(m, h)] = 1;
+    bool folded = false;
+    for (size_t v = 0; v < m->n_vertices; v++)
+      if (f->back[v])
+      {
+        f->move[v] = v3_scale(f->move[v], round + 1 < damp_rounds ? 0.5 : 0);
+        folded = true;
+      }
     if (!folded)
       break;
   }
+done:
+  return status;
 }
 
 static void apply(void* data, size_t begin, size_t end)
@@ -525,7 +551,7 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
     AQR_TRY(aqr_parallel(c, n, note_error, &f, at, at));
     AQR_TRY(solve(c, &f, at));
     AQR_TRY(aqr_parallel(c, n, limit, &f, at, at));
-    damp(&f);
+    AQR_TRY(damp(c, &f, at));
     AQR_TRY(aqr_parallel(c, n, apply, &f, at, at));
     AQR_TRY(judge(c, &f, at, next));
   }
