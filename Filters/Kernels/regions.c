@@ -54,7 +54,8 @@ typedef struct regions
   aqr_index* parent; /* union-find over items: faces without chords, then loops */
   size_t n_items;
   int32_t* euler;    /* per root */
-  uint8_t* bordered; /* per root: bit 0 has a loop, bit 1 has a cell */
+  uint8_t* bordered; /* per root: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
+  uint8_t* suspect;  /* per face: looked at */
   layout at;         /* of the face looked at */
   /* of regions to be cut */
   aqr_index* slot; /* per face: where its pieces are listed, or AQR_NONE */
@@ -260,6 +261,20 @@ static void unite_with_chains(regions* r)
   }
 }
 
+/* Unites a half-edge of a face with the one over it, where neither is cut. */
+static void unite_over(regions* r, const aqr_index* start, aqr_index h)
+{
+  aqr_index t = aqr_twin(r->s, h);
+  if (t != AQR_NONE && t < h && r->suspect[aqr_face_of(t)] && start[t] != AQR_NONE && start[h] != AQR_NONE)
+    unite(r->parent, start[h], start[t]);
+}
+
+/* Without chords and chains: one cell. */
+static bool is_plain(const regions* r, aqr_index f)
+{
+  return r->lines->head[f] == AQR_NONE;
+}
+
 /* Unites what belongs together inside faces and over whole edges. Stretches of cut edges need nothing: both sides of
  * them border the same loop. `start` (one per half-edge) holds the item there, AQR_NONE on cut edges. */
 static aqr_status unite_cells(regions* r, aqr_index* start)
@@ -269,6 +284,17 @@ static aqr_status unite_cells(regions* r, aqr_index* start)
   {
     if (f % 65536 == 0 && !aqr_step(r->c, 0.5 * (double)f / (double)s->n_faces))
       return AQR_CANCELLED;
+    if (!r->suspect[f])
+      continue;
+    if (is_plain(r, f))
+    {
+      for (aqr_index h = 3 * f; h < 3 * f + 3; h++)
+      {
+        start[h] = f;
+        unite_over(r, start, h);
+      }
+      continue;
+    }
     aqr_status status = lay_out(r, f);
     if (status != AQR_OK)
       return status;
@@ -284,10 +310,8 @@ static aqr_status unite_cells(regions* r, aqr_index* start)
     unite_with_chains(r);
     for (unsigned k = 0; k < 3; k++)
     {
-      aqr_index h = 3 * f + k, t = aqr_twin(s, h);
-      start[h] = kept_on(r, k) ? AQR_NONE : item_at_start(r, k);
-      if (t != AQR_NONE && t < h && start[t] != AQR_NONE && start[h] != AQR_NONE)
-        unite(r->parent, start[h], start[t]);
+      start[3 * f + k] = kept_on(r, k) ? AQR_NONE : item_at_start(r, k);
+      unite_over(r, start, 3 * f + k);
     }
   }
   return AQR_OK;
@@ -298,6 +322,31 @@ static bool on_chain(const regions* r, aqr_index point)
   return r->chains->is_node[r->s->clean[point]] != 0;
 }
 
+/* A stretch between two cells of one region. */
+static void count_stretch(regions* r, aqr_index item, bool leaves)
+{
+  aqr_index root = find(r->parent, item);
+  r->euler[root]--;
+  r->bordered[root] |= leaves ? 4 : 0;
+}
+
+static void count_plain(regions* r, aqr_index f)
+{
+  const aqr_surface* s = r->s;
+  aqr_index root = find(r->parent, f);
+  r->euler[root]++;
+  r->bordered[root] |= 2;
+  for (aqr_index h = 3 * f; h < 3 * f + 3; h++)
+  {
+    aqr_index t = aqr_twin(s, h), v = aqr_from(s, h);
+    bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
+    if (s->fan[v] == h && !on_chain(r, v))
+      r->euler[root]++;
+    if (t != AQR_NONE && (t > h || leaves))
+      count_stretch(r, f, leaves);
+  }
+}
+
 /* Cells minus stretches plus vertices of every region. */
 static aqr_status count_euler(regions* r)
 {
@@ -306,6 +355,13 @@ static aqr_status count_euler(regions* r)
   {
     if (f % 65536 == 0 && !aqr_step(r->c, 0.5 + 0.4 * (double)f / (double)s->n_faces))
       return AQR_CANCELLED;
+    if (!r->suspect[f])
+      continue;
+    if (is_plain(r, f))
+    {
+      count_plain(r, f);
+      continue;
+    }
     aqr_status status = lay_out(r, f);
     if (status != AQR_OK)
       return status;
@@ -321,14 +377,15 @@ static aqr_status count_euler(regions* r)
       aqr_index h = 3 * f + k, t = aqr_twin(s, h), v = aqr_from(s, h);
       if (s->fan[v] == h && !on_chain(r, v))
         r->euler[find(r->parent, item_at_start(r, k))]++;
-      if (t == AQR_NONE || t < h)
+      bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
+      if (t == AQR_NONE || (t < h && !leaves))
         continue;
       size_t first, end;
       marks_on(r, k, &first, &end);
-      r->euler[find(r->parent, a->item[cell_before(a, first)])]--;
+      count_stretch(r, a->item[cell_before(a, first)], leaves);
       for (size_t i = first; i < end; i++)
         if (a->marks[i].kept)
-          r->euler[find(r->parent, a->item[a->marks[i].cell])]--;
+          count_stretch(r, a->item[a->marks[i].cell], leaves);
     }
   }
   for (size_t i = 0; i < r->net->n_loops; i++)
@@ -449,6 +506,8 @@ static aqr_status list_cells(regions* r)
     if (f % 65536 == 0 && !aqr_step(r->c, 0.95))
       return AQR_CANCELLED;
     r->slot[f] = AQR_NONE;
+    if (!r->suspect[f] || (is_plain(r, f) && !needs_cut(r, f)))
+      continue;
     aqr_status status = lay_out(r, f);
     if (status != AQR_OK)
       return status;
@@ -741,9 +800,9 @@ done:
 }
 
 aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, const aqr_network* net,
-  aqr_lines* lines, uint8_t* is_bare, bool cut, size_t* added)
+  aqr_lines* lines, uint8_t* is_bare, uint8_t* suspect, bool cut, size_t* added)
 {
-  regions r = { .c = c, .s = s, .chains = chains, .net = net, .lines = lines };
+  regions r = { .c = c, .s = s, .chains = chains, .net = net, .lines = lines, .suspect = suspect };
   aqr_status status = AQR_OK;
   *added = 0;
   r.n_items = s->n_faces + net->n_loops;
@@ -758,7 +817,7 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   AQR_TRY(unite_cells(&r, start));
   AQR_TRY(count_euler(&r));
   for (aqr_index f = 0; f < s->n_faces; f++)
-    is_bare[f] = start[3 * f] != AQR_NONE && !(r.bordered[find(r.parent, start[3 * f])] & 1);
+    is_bare[f] = !suspect[f] ? is_bare[f] : start[3 * f] != AQR_NONE && !(r.bordered[find(r.parent, start[3 * f])] & 1);
   bool any = false;
   for (aqr_index i = 0; cut && i < r.n_items && !any; i++)
     any = r.parent[i] == i && needs_cut(&r, i);
@@ -767,6 +826,8 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
     AQR_TRY(list_cells(&r));
     AQR_TRY(search(&r));
     AQR_TRY(draw_arcs(&r, added));
+    for (aqr_index f = 0; f < s->n_faces; f++)
+      suspect[f] = r.slot[f] != AQR_NONE;
   }
 done:
   AQR_DROP(c, start, 3 * s->n_faces);

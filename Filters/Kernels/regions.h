@@ -10,8 +10,10 @@
 
 /* Adds to `lines` an arc through every region that is not a disk for each arc it takes to make it one, ends on the
  * region's border. *added tells how many; 0: every region is a disk, or bears no line at all. is_bare (one per face): 1
- * where the region has no line on its border, that is, a whole component that carries none. */
+ * where the region has no line on its border, that is, a whole component that carries none. suspect (one per face):
+ * which faces to look at, all of them in the first round; afterwards those of the regions that arcs were drawn through,
+ * the only ones that a next round needs. */
 aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, const aqr_network* net,
-  aqr_lines* lines, uint8_t* is_bare, bool cut, size_t* added);
+  aqr_lines* lines, uint8_t* is_bare, uint8_t* suspect, bool cut, size_t* added);
 
 #endif

@@ -289,14 +289,17 @@ static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tole
   aqr_network net = { 0 };
   aqr_status status = AQR_OK;
   uint8_t* is_bare = AQR_NEW0(c, uint8_t, r->surface->n_faces);
-  AQR_REQUIRE(is_bare, AQR_OUT_OF_MEMORY);
+  uint8_t* suspect = AQR_NEW(c, uint8_t, r->surface->n_faces);
+  AQR_REQUIRE(is_bare && suspect, AQR_OUT_OF_MEMORY);
+  memset(suspect, 1, r->surface->n_faces);
   for (int i = 0; i < most_cuts; i++)
   {
     size_t added = 0;
     aqr_network_free(c, &net);
     AQR_TRY(aqr_network_build(
       c, r->surface, &r->lines, &r->chains, tolerance, o->boundary_lines ? tolerance : 8 * tolerance, &net));
-    AQR_TRY(aqr_regions_cut(c, r->surface, &r->chains, &net, &r->lines, is_bare, o->preserve_topology, &added));
+    AQR_TRY(
+      aqr_regions_cut(c, r->surface, &r->chains, &net, &r->lines, is_bare, suspect, o->preserve_topology, &added));
     r->report.topology_cuts += added;
     if (!added)
       break;
@@ -306,6 +309,7 @@ static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tole
 done:
   aqr_network_free(c, &net);
   AQR_DROP(c, is_bare, r->surface->n_faces);
+  AQR_DROP(c, suspect, r->surface->n_faces);
   return status;
 }
 
