@@ -559,14 +559,23 @@ static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
   return status;
 }
 
+/* The lines are as large as all else together and nothing after them reads them: their view takes their place. */
+static aqr_status show_lines(aqr_remesher* r)
+{
+  double began = aqr_seconds();
+  r->context.peak_bytes = r->context.bytes;
+  aqr_status status = aqr_results_lines(r);
+  aqr_lines_free(&r->context, &r->lines);
+  end_stage(r, AQR_STAGE_RESULT, began);
+  return status;
+}
+
 static aqr_status run_results(aqr_remesher* r)
 {
-  aqr_status status = AQR_OK;
-  AQR_TRY(aqr_results_mesh(r));
-  AQR_TRY(aqr_results_lines(r));
-  if (!r->field_view.points)
-    AQR_TRY(aqr_results_field(r));
-done:
+  aqr_status status = aqr_results_mesh(r);
+  aqr_polygon_mesh_free(&r->context, &r->polygons);
+  if (status == AQR_OK && !r->field_view.points)
+    status = aqr_results_field(r);
   return status;
 }
 
@@ -578,6 +587,7 @@ static aqr_status run_stages(aqr_remesher* r, const aqr_options* o)
   AQR_TRY(run_cached(r, AQR_STAGE_FIELD, o, run_field));
   AQR_TRY(run_cached(r, AQR_STAGE_SIZING, o, run_sizing));
   AQR_TRY(run_lines(r, o));
+  AQR_TRY(show_lines(r));
   double began = begin_stage(r, AQR_STAGE_FIT);
   AQR_TRY(aqr_fit(&r->context, r->surface, r->field.normal, &r->polygons));
   end_stage(r, AQR_STAGE_FIT, began);
