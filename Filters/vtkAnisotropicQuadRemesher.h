@@ -50,12 +50,9 @@
 class VTKANISOTROPICQUADREMESHER_EXPORT vtkAnisotropicQuadRemesher : public vtkPolyDataAlgorithm
 {
 public:
-  /** A filter with every parameter at its default. */
   static vtkAnisotropicQuadRemesher* New();
   vtkTypeMacro(vtkAnisotropicQuadRemesher, vtkPolyDataAlgorithm);
-  /** Prints every parameter. */
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  /** As the superclass; blocks of a composite data set keep the stages computed for each of them. */
   vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   /** The output ports. */
@@ -272,7 +269,6 @@ public:
   std::string GetReport() const;
 
 protected:
-  /// @cond what subclasses see; documented by the functions above
   vtkAnisotropicQuadRemesher();
   ~vtkAnisotropicQuadRemesher() override;
 
@@ -298,7 +294,6 @@ protected:
   bool GenerateDirections = true;
   bool GenerateConfidence = true;
   bool GenerateLines = true;
-  /// @endcond
 
 private:
   vtkAnisotropicQuadRemesher(const vtkAnisotropicQuadRemesher&) = delete;

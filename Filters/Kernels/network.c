@@ -17,6 +17,7 @@ typedef struct builder
   aqr_index* on; /* crossings along chords, in order */
   size_t n_on;
   aqr_index* alive;   /* per line: its nodes that are alive */
+  uint8_t* reached;   /* per line: what of it lives hangs together with an edge of the surface */
   aqr_index* stop_of; /* per sample: the stop at a line's end on a chain, or AQR_NONE */
   aqr_index* node_of; /* per cleaned point: the stop of a node of the feature graph */
 } builder;
@@ -86,49 +87,77 @@ static int turn_on(const aqr_crossing* x, aqr_index chord)
   return side_of(x, chord) == 0 ? x->turn : -x->turn;
 }
 
-static vec3 chord_start(const builder* b, aqr_index chord)
+/* Twice as many places as are told apart along an edge where three chords nearly meet. Large enough for the order of
+ * crossings to be the true one wherever it can be seen, small enough for 64 bits. */
+#define AQR_PLACES ((int64_t)1 << 15)
+#define AQR_HALF_WORD ((int64_t)1 << 31)
+
+/* A chord's end in barycentric coordinates of its face, times AQR_PLACES; or how these change as it moves along the
+ * face's border. Never at a corner, so that ends on two sides differ. */
+static void end_at(const builder* b, aqr_index f, const aqr_sample* a, bool moving, int64_t w[3])
 {
-  return b->l->samples[chord].p;
+  aqr_index h = aqr_sample_half_edge(b->s, a, f), k = h % 3;
+  int64_t t = 2 * (int64_t)(a->t * (double)(AQR_PLACES / 2)) + 1;
+  if (t >= AQR_PLACES)
+    t = AQR_PLACES - 1;
+  if (h != a->edge)
+    t = AQR_PLACES - t;
+  w[k] = moving ? -1 : AQR_PLACES - t;
+  w[(k + 1) % 3] = moving ? 1 : t;
+  w[(k + 2) % 3] = 0;
 }
 
-static vec3 chord_vector(const builder* b, aqr_index chord)
+static void cross(const int64_t a[3], const int64_t b[3], int64_t c[3])
 {
-  return v3_sub(b->l->samples[chord + 1].p, b->l->samples[chord].p);
+  for (unsigned i = 0; i < 3; i++)
+    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-/* Where along chord a, from 0 to 1, the line of chord q meets it. */
-static double meet(const builder* b, aqr_index a, aqr_index q)
+/* The sign of the determinant of three lines, exact: their numbers are below 2^30, those of the product of two below
+ * 2^61, which is taken in two halves. */
+static int determinant(int64_t line[3][3])
 {
-  vec3 e = chord_vector(b, q), d = chord_vector(b, a);
-  vec3 u = v3_cross(e, v3_sub(chord_start(b, a), chord_start(b, q))), v = v3_cross(e, d);
-  double n = v3_norm2(v);
-  return n > 0 ? fmin(1, fmax(0, -v3_dot(u, v) / n)) : 0.5;
+  int64_t m[3], high = 0, low = 0;
+  cross(line[1], line[2], m);
+  for (unsigned i = 0; i < 3; i++)
+  {
+    high += line[0][i] * (m[i] / AQR_HALF_WORD);
+    low += line[0][i] * (m[i] % AQR_HALF_WORD);
+  }
+  high += low / AQR_HALF_WORD;
+  low %= AQR_HALF_WORD;
+  return high ? (high > 0 ? 1 : -1) : (low > 0) - (low < 0);
 }
 
-/* Orientation of three chords of face f that cross each other pairwise: the sign of the determinant of their lines,
- * decided once per triple, for the chords in ascending order, so that the three orders that follow from it agree. Where
- * the three meet in one point the last chord counts as shifted to its left. */
+/* Orientation of three chords of face f that cross each other pairwise: the sign of the determinant of their lines.
+ *
+ * The orders of crossings that follow along the chords must be those of some straight lines, or the loops around these
+ * crossings would close no disks. So the sign is exact, and where the three lines meet in one point each end counts as
+ * moved a little along the border, ends farther along infinitely more than those before them: that keeps the order of
+ * ends along the border, which decides who crosses whom, also where chords coincide. The sign is then that of the first
+ * derivative that does not vanish. */
 static int triple(const builder* b, aqr_index f, aqr_index a, aqr_index p, aqr_index q)
 {
-  aqr_index k[3] = { a, p, q };
-  int parity = 1;
-  for (unsigned i = 0; i < 3; i++) /* three compare-and-swaps of neighbours sort three */
-  {
-    unsigned j = i % 2;
-    if (k[j] > k[j + 1])
-    {
-      aqr_index swap = k[j];
-      k[j] = k[j + 1];
-      k[j + 1] = swap;
-      parity = -parity;
-    }
-  }
   const aqr_sample* m = b->l->samples;
-  vec3 x = v3_madd(chord_start(b, k[0]), meet(b, k[0], k[1]), chord_vector(b, k[0]));
-  vec3 n = aqr_face_cross(b->s, f);
-  int side = v3_dot(n, v3_cross(chord_vector(b, k[2]), v3_sub(x, chord_start(b, k[2])))) > 0 ? 1 : -1;
-  int turn = aqr_chords_cross(b->s, f, &m[k[0]], &m[k[0] + 1], &m[k[1]], &m[k[1] + 1]);
-  return parity * side * turn;
+  const aqr_sample* end[6] = { &m[a], &m[a + 1], &m[p], &m[p + 1], &m[q], &m[q + 1] };
+  unsigned rank[6] = { 0 }; /* 0: the farthest along the border */
+  for (unsigned moved = 0; moved < 64; moved++)
+  {
+    int64_t line[3][3], w[2][3];
+    for (unsigned i = 0; moved == 1 && i < 6; i++)
+      for (unsigned j = 0; j < 6; j++)
+        rank[i] += aqr_border_before(b->s, f, end[i], end[j]);
+    for (unsigned i = 0; i < 3; i++)
+    {
+      for (unsigned k = 0; k < 2; k++)
+        end_at(b, f, end[2 * i + k], moved >> rank[2 * i + k] & 1, w[k]);
+      cross(w[0], w[1], line[i]);
+    }
+    int sign = determinant(line);
+    if (sign)
+      return sign;
+  }
+  return 1; /* not reached: no chord begins and ends on one edge */
 }
 
 /* Whether crossing x comes before crossing y along chord a. */
@@ -166,13 +195,74 @@ static bool ends_on_chain(const aqr_line* line, unsigned end)
   return line->ends[end] == AQR_END_BOUNDARY || line->ends[end] == AQR_END_FEATURE;
 }
 
+/* The crossings of a line, in order along it: [*first, *end) of `on`. */
+static void crossings_of(const builder* b, aqr_index id, size_t* first, size_t* end)
+{
+  const aqr_line* line = &b->l->lines[id];
+  *first = b->first[line->first];
+  *end = b->first[line->first + line->count - 1];
+}
+
+/* Whether the part of a line that lives passes an edge of the surface. */
+static bool passes_edge(const builder* b, aqr_index id)
+{
+  const aqr_line* line = &b->l->lines[id];
+  if (line->closed || ends_on_chain(line, 0) || ends_on_chain(line, 1))
+    return true;
+  aqr_index chord = AQR_NONE;
+  for (size_t a = line->first; a + 1 < line->first + line->count; a++)
+    for (size_t i = b->first[a]; i < b->first[a + 1]; i++)
+      if (b->net->crossings[b->on[i]].alive)
+      {
+        if (chord != AQR_NONE && chord != a)
+          return true;
+        chord = (aqr_index)a;
+      }
+  return false;
+}
+
+/* A part of the network that no edge of the surface passes lies inside one face and cuts nothing off: it goes. */
+static void prune_inside_faces(builder* b, aqr_index* stack)
+{
+  const aqr_lines* l = b->l;
+  aqr_network* net = b->net;
+  size_t n = 0, first, end;
+  uint8_t* reached = b->reached;
+  for (aqr_index i = 0; i < l->n_lines; i++)
+    if (!l->lines[i].is_chain && b->alive[i] >= 2 && passes_edge(b, i))
+    {
+      reached[i] = 1;
+      stack[n++] = i;
+    }
+  while (n)
+  {
+    crossings_of(b, stack[--n], &first, &end);
+    for (size_t i = first; i < end; i++)
+    {
+      const aqr_crossing* x = &net->crossings[b->on[i]];
+      for (unsigned k = 0; k < 2; k++)
+        if (x->alive && !reached[x->line[k]])
+        {
+          reached[x->line[k]] = 1;
+          stack[n++] = x->line[k];
+        }
+    }
+  }
+  for (aqr_index i = 0; i < l->n_lines; i++)
+    if (!l->lines[i].is_chain && !reached[i])
+      b->alive[i] = 0;
+  for (size_t i = 0; i < net->n_crossings; i++)
+    net->crossings[i].alive = net->crossings[i].alive && reached[net->crossings[i].line[0]];
+}
+
 /* Lines with fewer than two nodes have no edge: they go, and their crossings with them, until every line left has. */
 static aqr_status prune(builder* b)
 {
   const aqr_lines* l = b->l;
   b->alive = AQR_NEW0(b->c, aqr_index, l->n_lines);
+  b->reached = AQR_NEW0(b->c, uint8_t, l->n_lines);
   aqr_index* stack = AQR_NEW(b->c, aqr_index, l->n_lines);
-  if (!b->alive || !stack)
+  if (!b->alive || !b->reached || !stack)
   {
     AQR_DROP(b->c, stack, l->n_lines);
     return AQR_OUT_OF_MEMORY;
@@ -192,8 +282,9 @@ static aqr_status prune(builder* b)
   }
   while (n)
   {
-    const aqr_line* line = &l->lines[stack[--n]];
-    for (size_t i = b->first[line->first]; i < b->first[line->first + line->count - 1]; i++)
+    size_t first, end;
+    crossings_of(b, stack[--n], &first, &end);
+    for (size_t i = first; i < end; i++)
     {
       aqr_crossing* x = &b->net->crossings[b->on[i]];
       if (!x->alive)
@@ -204,6 +295,7 @@ static aqr_status prune(builder* b)
           stack[n++] = x->line[k];
     }
   }
+  prune_inside_faces(b, stack);
   AQR_DROP(b->c, stack, l->n_lines);
   return AQR_OK;
 }
@@ -877,6 +969,7 @@ done:
   AQR_DROP(c, b.first, lines->n_samples + 2);
   AQR_DROP(c, b.on, b.n_on);
   AQR_DROP(c, b.alive, lines->n_lines);
+  AQR_DROP(c, b.reached, lines->n_lines);
   AQR_DROP(c, b.stop_of, lines->n_samples);
   AQR_DROP(c, b.node_of, s->n_clean);
   if (status != AQR_OK)

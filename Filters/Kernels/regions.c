@@ -8,7 +8,7 @@
 /* A chord's end on the border of a face. */
 typedef struct border_mark
 {
-  aqr_index sample, chord;
+  aqr_index sample, chord, line;
   bool starts;   /* the chord starts here, else it ends here */
   bool kept;     /* an edge of the network passes */
   unsigned cell; /* of the stretch of border that follows counter-clockwise */
@@ -137,7 +137,7 @@ static aqr_status gather_marks(regions* r, aqr_index f)
       return AQR_OUT_OF_MEMORY;
     for (unsigned i = 0; i < 2; i++)
     {
-      border_mark m = { n + i, n, i == 0, r->net->edge_at[n + i] != AQR_NONE, 0 };
+      border_mark m = { n + i, n, l->segments[k].line, i == 0, r->net->edge_at[n + i] != AQR_NONE, 0 };
       any |= m.kept;
       size_t j = a->n_marks++;
       for (; j > 0 && aqr_border_before(r->s, f, &l->samples[m.sample], &l->samples[a->marks[j - 1].sample]); j--)
@@ -497,6 +497,51 @@ static aqr_status add_contacts(regions* r, aqr_index first_cell)
   return AQR_OK;
 }
 
+static void move_sample(regions* r, const border_mark* m, double t)
+{
+  aqr_lines* l = r->lines;
+  const aqr_line* line = &l->lines[m->line];
+  size_t ends[2] = { m->sample, m->sample }, last = line->first + line->count - 1;
+  if (line->closed && (m->sample == line->first || m->sample == last))
+  {
+    ends[0] = line->first;
+    ends[1] = last;
+  }
+  for (unsigned i = 0; i < 2; i++)
+  {
+    l->samples[ends[i]].t = t;
+    l->samples[ends[i]].p = aqr_edge_point(r->s, l->samples[m->sample].edge, t);
+  }
+}
+
+/* Moves apart, by less than a thousandth of the way to the next, marks on half-edge k that lie at one place, so that an
+ * arc can pass between any two. Their order stays. */
+static void part_marks(regions* r, unsigned k)
+{
+  size_t first, end, n;
+  marks_on(r, k, &first, &end);
+  n = end - first;
+  if (n < 2)
+    return;
+  const border_mark* m = r->at.marks;
+  bool along = r->lines->samples[m[first].sample].edge == 3 * r->at.face + k;
+  for (size_t i = 0, j; i < n; i = j)
+  {
+    double t = r->lines->samples[m[along ? first + i : end - 1 - i].sample].t, next = 1;
+    for (j = i + 1; j < n; j++)
+    {
+      double after = r->lines->samples[m[along ? first + j : end - 1 - j].sample].t;
+      if (after > t)
+      {
+        next = after;
+        break;
+      }
+    }
+    for (size_t a = i + 1; a < j; a++)
+      move_sample(r, &m[along ? first + a : end - 1 - a], t + (next - t) * (double)(a - i) / (double)(1024 * (j - i)));
+  }
+}
+
 /* Lists the cells of all faces that have some of a region to be cut, and their pieces. */
 static aqr_status list_cells(regions* r)
 {
@@ -516,6 +561,8 @@ static aqr_status list_cells(regions* r)
       any |= needs_cut(r, r->at.item[i]);
     if (!any)
       continue;
+    for (unsigned k = 0; k < 3; k++)
+      part_marks(r, k);
     if (!AQR_RESERVE(r->c, r->cells, r->cell_capacity, r->n_cells + r->at.n_cells) ||
         !AQR_RESERVE(r->c, r->slots, r->slot_capacity, r->n_slots + 1))
       return AQR_OUT_OF_MEMORY;
@@ -661,7 +708,6 @@ static void strip(const regions* r, hub* hubs, const link* links, uint8_t* gone,
   while (hubs[vertex].degree == 1)
   {
     uint32_t i = hubs[vertex].links;
-    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): where a vertex has a degree there are links */
     const piece* p = &r->pieces[links[i].piece];
     gone[i] = 1;
     hang(r, hubs, links, i, true);
@@ -709,6 +755,31 @@ static aqr_status push_way_out(regions* r, aqr_index k, bool outwards, uint8_t* 
   }
 }
 
+/* Takes out of an arc the chords that go back to the edge they come from: they have no direction, and lead around
+ * nothing but the end of a chord there, which the arc may as well pass on the other side of the edge. An arc keeps its
+ * ends, on the network. */
+static void straighten(regions* r, aqr_line* line)
+{
+  aqr_sample* a = r->drawn + line->first;
+  size_t n = 0, count = r->n_drawn - line->first;
+  for (size_t i = 0; i < count; i++)
+  {
+    if (n == 0 || a[n - 1].edge != a[i].edge)
+      a[n++] = a[i];
+    else if (n == 1)
+      a[0].face = a[i].face;
+    else if (i + 1 < count)
+      n--;
+    else
+    {
+      a[n - 1] = a[i];
+      a[n - 1].face = a[n - 2].face;
+    }
+  }
+  line->count = n;
+  r->n_drawn = line->first + n;
+}
+
 /* Draws the arc over a link: from the network to the link on one side, from the link to the network on the other. */
 static aqr_status draw(regions* r, const link* l)
 {
@@ -733,7 +804,9 @@ static aqr_status draw(regions* r, const link* l)
     AQR_TRY(push(r, l->piece, r->cells[other].face));
     AQR_TRY(push_way_out(r, other, true, &line.ends[1]));
   }
-  line.count = r->n_drawn - line.first;
+  straighten(r, &line);
+  if (line.count < 2)
+    goto done;
   for (size_t k = line.first + 1; k < r->n_drawn; k++)
     r->drawn[k].arc = r->drawn[k - 1].arc + (float)v3_norm(v3_sub(r->drawn[k].p, r->drawn[k - 1].p));
   AQR_REQUIRE(AQR_RESERVE(r->c, r->arcs, r->arc_capacity, r->n_arcs + 1), AQR_OUT_OF_MEMORY);

@@ -313,8 +313,8 @@ done:
   return status;
 }
 
-/* Whether the mesh has the Euler number of the cleaned input. Every region between the lines was made a disk, but that
- * count of regions is one over microscopic triangles; this one is of the result. */
+/* Whether the mesh has the Euler number of the cleaned input: rounds of arcs end after a number of them, whether or not
+ * every region between the lines is a disk by then. */
 static bool keeps_topology(const aqr_remesher* r)
 {
   const aqr_polygon_mesh* m = &r->polygons;
