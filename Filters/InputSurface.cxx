@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "InputSurface.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -26,6 +27,24 @@ bool InRange(vtkCellArray* cells, vtkIdType points)
     cells->GetConnectivityArray()->GetRange(range);
   }
   return range[0] >= 0.0 && range[1] < static_cast<double>(points);
+}
+
+//------------------------------------------------------------------------------
+// The corners of triangles, in `copy` where they are not stored as 64-bit integers. Since VTK 9.6 any array may
+// hold them, and the accessors for one width answer nothing there.
+const int64_t* Corners(vtkCellArray* triangles, std::vector<int64_t>& copy)
+{
+  vtkDataArray* stored = triangles->GetConnectivityArray();
+  if (auto* wide = vtkAOSDataArrayTemplate<vtkTypeInt64>::FastDownCast(stored))
+  {
+    return reinterpret_cast<const int64_t*>(wide->GetPointer(0));
+  }
+  copy.resize(static_cast<size_t>(stored->GetNumberOfValues()));
+  for (size_t i = 0; i < copy.size(); ++i)
+  {
+    copy[i] = static_cast<int64_t>(stored->GetComponent(static_cast<vtkIdType>(i), 0));
+  }
+  return copy.data();
 }
 
 //------------------------------------------------------------------------------
@@ -125,16 +144,7 @@ aqr_status InputSurface::Give(vtkPolyData* input, aqr_remesher* remesher)
   view.number_of_points = static_cast<size_t>(input->GetNumberOfPoints());
   view.number_of_triangles = static_cast<size_t>(polys->GetNumberOfCells());
   std::vector<int64_t> corners;
-  if (polys->IsStorage64Bit())
-  {
-    view.triangles = reinterpret_cast<const int64_t*>(polys->GetConnectivityArray64()->GetPointer(0));
-  }
-  else
-  {
-    const auto* narrow = polys->GetConnectivityArray32()->GetPointer(0);
-    corners.assign(narrow, narrow + 3 * view.number_of_triangles);
-    view.triangles = corners.data();
-  }
+  view.triangles = Corners(polys, corners);
   vtkDataArray* data = input->GetPoints()->GetData();
   vtkNew<vtkDoubleArray> converted;
   if (auto* floats = vtkFloatArray::FastDownCast(data))

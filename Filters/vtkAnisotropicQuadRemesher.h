@@ -50,9 +50,12 @@
 class VTKANISOTROPICQUADREMESHER_EXPORT vtkAnisotropicQuadRemesher : public vtkPolyDataAlgorithm
 {
 public:
+  /** A filter with every parameter at its default. */
   static vtkAnisotropicQuadRemesher* New();
   vtkTypeMacro(vtkAnisotropicQuadRemesher, vtkPolyDataAlgorithm);
+  /** Prints every parameter. */
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  /** As the superclass; blocks of a composite data set keep the stages computed for each of them. */
   vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   /** The output ports. */
@@ -269,6 +272,7 @@ public:
   std::string GetReport() const;
 
 protected:
+  /// @cond what subclasses see; documented by the functions above
   vtkAnisotropicQuadRemesher();
   ~vtkAnisotropicQuadRemesher() override;
 
@@ -294,6 +298,7 @@ protected:
   bool GenerateDirections = true;
   bool GenerateConfidence = true;
   bool GenerateLines = true;
+  /// @endcond
 
 private:
   vtkAnisotropicQuadRemesher(const vtkAnisotropicQuadRemesher&) = delete;

@@ -31,6 +31,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/** @def AQR_API
+ * Makes a function visible outside of the library. */
 #if defined(AQR_SHARED) && defined(_WIN32)
 #ifdef AQR_BUILD
 #define AQR_API __declspec(dllexport)
@@ -50,6 +52,7 @@ extern "C"
 
   /** Index of a point, face or half-edge. The largest value means "none". */
   typedef uint32_t aqr_index;
+/** The index that means "none". */
 #define AQR_NONE UINT32_MAX
 
   /** Why a call failed. */
@@ -90,11 +93,11 @@ extern "C"
   /** The input surface, read during set_input only. */
   typedef struct aqr_input
   {
-    size_t number_of_points;
-    const float* points_f;  /**< 3 * number_of_points, or NULL */
-    const double* points_d; /**< 3 * number_of_points, used when points_f is NULL */
-    size_t number_of_triangles;
-    const int64_t* triangles; /**< 3 * number_of_triangles point indices */
+    size_t number_of_points;    /**< length of the arrays per point */
+    const float* points_f;      /**< 3 * number_of_points, or NULL */
+    const double* points_d;     /**< 3 * number_of_points, used when points_f is NULL */
+    size_t number_of_triangles; /**< length of the arrays per triangle */
+    const int64_t* triangles;   /**< 3 * number_of_triangles point indices */
   } aqr_input;
 
   /** What asks for the density of the output. */
@@ -132,6 +135,7 @@ extern "C"
     uint32_t seed;               /**< 0: breaks ties between seeds of equal rank */
   } aqr_options;
 
+  /** Every option at its default, with the cookie that aqr_remesher_run() asks for. */
   AQR_API aqr_options aqr_default_options(void);
 
   /** Kind of a line, and of the edge of the mesh that lies on it. */
@@ -167,12 +171,12 @@ extern "C"
   /** Port 0: the quad-dominant mesh. Closed where the input is; consistently oriented. */
   typedef struct aqr_mesh
   {
-    size_t number_of_points;
-    const double* points;      /**< 3 per point, in the input's coordinates */
-    const double* normals;     /**< 3 per point, unit, of the original surface */
-    const aqr_origin* origins; /**< per point */
-    const uint8_t* point_kind; /**< per point: 0 interior, 1 boundary, 2 feature, 3 corner */
-    size_t number_of_faces;
+    size_t number_of_points;      /**< length of the arrays per point */
+    const double* points;         /**< 3 per point, in the input's coordinates */
+    const double* normals;        /**< 3 per point, unit, of the original surface */
+    const aqr_origin* origins;    /**< per point */
+    const uint8_t* point_kind;    /**< per point: 0 interior, 1 boundary, 2 feature, 3 corner */
+    size_t number_of_faces;       /**< length of the arrays per face */
     const int64_t* offsets;       /**< number_of_faces + 1 */
     const int64_t* connectivity;  /**< offsets[number_of_faces] point indices, counter-clockwise */
     const aqr_index* face_source; /**< per face: an input triangle below it */
@@ -182,16 +186,16 @@ extern "C"
   /** Ports 1 and 2: the cleaned surface with its direction field. */
   typedef struct aqr_field_view
   {
-    size_t number_of_points;
-    const double* points;        /**< 3 per point, in the input's coordinates */
-    const aqr_origin* origins;   /**< per point */
-    const double* normals;       /**< 3 per point, unit */
-    const double* min_direction; /**< 3 per point, unit, tangent */
-    const double* max_direction; /**< 3 per point, unit, tangent */
-    const double* min_curvature; /**< per point, <= max_curvature, one over the input's unit of length */
-    const double* max_curvature;
-    const float* point_confidence; /**< per point, [0,1] (paper 4.1) */
-    size_t number_of_triangles;
+    size_t number_of_points;          /**< length of the arrays per point */
+    const double* points;             /**< 3 per point, in the input's coordinates */
+    const aqr_origin* origins;        /**< per point */
+    const double* normals;            /**< 3 per point, unit */
+    const double* min_direction;      /**< 3 per point, unit, tangent */
+    const double* max_direction;      /**< 3 per point, unit, tangent */
+    const double* min_curvature;      /**< per point, <= max_curvature, one over the input's unit of length */
+    const double* max_curvature;      /**< per point, positive where the surface bends away from its normal */
+    const float* point_confidence;    /**< per point, [0,1] (paper 4.1) */
+    size_t number_of_triangles;       /**< length of the arrays per triangle */
     const aqr_index* triangles;       /**< 3 per triangle */
     const aqr_index* triangle_source; /**< per triangle: the input triangle it came from */
     const float* triangle_confidence; /**< per triangle, [0,1] (paper, equation 1) */
@@ -200,11 +204,11 @@ extern "C"
   /** Port 3: polylines on the cleaned surface. A closed line repeats its first point at its end. */
   typedef struct aqr_lines_view
   {
-    size_t number_of_lines;
-    const int64_t* offsets; /**< number_of_lines + 1, into the arrays per point */
-    const uint8_t* type;    /**< per line, aqr_line_type of its seed */
-    const uint8_t* ends;    /**< 2 per line, aqr_line_end of the first and the last point */
-    size_t number_of_points;
+    size_t number_of_lines;    /**< length of the arrays per line */
+    const int64_t* offsets;    /**< number_of_lines + 1, into the arrays per point */
+    const uint8_t* type;       /**< per line, aqr_line_type of its seed */
+    const uint8_t* ends;       /**< 2 per line, aqr_line_end of the first and the last point */
+    size_t number_of_points;   /**< length of the arrays per point */
     const double* points;      /**< 3 per point, in the input's coordinates */
     const double* curvature;   /**< per point: normal curvature across the line */
     const double* arc_length;  /**< per point, from the line's first point */
@@ -229,7 +233,7 @@ extern "C"
     size_t components;           /**< of the cleaned input */
     size_t lines;                /**< traced */
     size_t line_samples;         /**< edge crossings of all lines */
-    size_t proximity_queries;
+    size_t proximity_queries;    /**< questions for the nearest other line */
     size_t topology_cuts;        /**< lines added so that every region is a disk */
     size_t coarsened_components; /**< components that carried no lines and were decimated instead */
     size_t target_missed;        /**< 1 when target_points could not be met within 5 % */
@@ -246,10 +250,12 @@ extern "C"
     int reused;        /**< 1 when the cached result served */
   } aqr_stage;
 
+  /** One surface, the stages computed for it, and the last result. */
   typedef struct aqr_remesher aqr_remesher;
 
   /** hooks may be NULL. *remesher is NULL after a failure. */
   AQR_API aqr_status aqr_remesher_new(const aqr_hooks* hooks, aqr_remesher** remesher);
+  /** Frees the remesher and all it holds; NULL is allowed. */
   AQR_API void aqr_remesher_free(aqr_remesher* remesher);
 
   /** Copies what it needs; the arrays may go afterwards. Drops every cached stage. */
@@ -261,13 +267,16 @@ extern "C"
   /** Runs the stages whose parameters changed since the last run, and all that follow them. */
   AQR_API aqr_status aqr_remesher_run(aqr_remesher* remesher, const aqr_options* options);
 
-  /** Results of the last run that returned AQR_OK; NULL otherwise. */
+  /** The mesh of the last run, if that returned AQR_OK; NULL otherwise. */
   AQR_API const aqr_mesh* aqr_remesher_mesh(const aqr_remesher* remesher);
+  /** The directions of that run, likewise. */
   AQR_API const aqr_field_view* aqr_remesher_field(const aqr_remesher* remesher);
+  /** The lines of that run, likewise. */
   AQR_API const aqr_lines_view* aqr_remesher_lines(const aqr_remesher* remesher);
 
   /** Counts of the last call; never NULL, partly filled after a failure. */
   AQR_API const aqr_report* aqr_remesher_report(const aqr_remesher* remesher);
+  /** All stages in their order, `*count` of them. */
   AQR_API const aqr_stage* aqr_remesher_stages(const aqr_remesher* remesher, size_t* count);
 
   /** More about the last failure than its status says (which option, which point); "" otherwise. */

@@ -95,7 +95,7 @@ static void place_run(const aqr_surface* s, aqr_polygon_mesh* m, aqr_index o)
     k = aqr_pm_next(m, k);
   }
   spot b = spot_of(s, &m->vertices[aqr_pm_from(m, o)].place), a = spot_of(s, &m->vertices[aqr_pm_from(m, k)].place),
-       end;
+       end = { AQR_NONE, 0 };
   double length = a.h == AQR_NONE || b.h == AQR_NONE ? -1 : walk(s, a, b, INFINITY, &end);
   if (!(length > 0))
     return;

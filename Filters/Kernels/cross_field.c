@@ -138,16 +138,15 @@ static void anchors(void* data, size_t begin, size_t end)
     aqr_complex a = cx(w, 0);
     if (j->previous[v] != AQR_NONE)
     {
-      aqr_complex b = cx(0, 0);
       if (leaves_seam(j, (aqr_index)v) || leaves_seam(j, j->previous[v]))
       {
-        b = seam_anchor(j, (aqr_index)v);
+        aqr_complex b = seam_anchor(j, (aqr_index)v);
         if (size(b) > 0)
           a = b;
       }
       else
       {
-        b = boundary_anchor(j, (aqr_index)v);
+        aqr_complex b = boundary_anchor(j, (aqr_index)v);
         a = cx_add(a, cx((1 - w) * (1 - w) * b.x, (1 - w) * (1 - w) * b.y));
       }
     }

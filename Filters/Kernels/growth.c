@@ -116,9 +116,9 @@ static aqr_status close_loop(aqr_context* c, aqr_grower* g, aqr_index met, doubl
     if (at <= last)
     {
       m = at;
-      target = t->samples[m];
       if (!AQR_RESERVE(c, t->samples, t->capacity, t->n_samples + 1))
         return AQR_OUT_OF_MEMORY;
+      target = t->samples[m];
       memmove(t->samples, t->samples + m, (t->n_samples - m) * sizeof *t->samples);
       t->n_samples -= m;
       target.face = t->chart.face; /* as for every last sample: the face of the chord before */

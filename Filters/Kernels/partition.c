@@ -143,6 +143,8 @@ aqr_partition aqr_best_partition(const aqr_polygon_mesh* m, const aqr_polygon* g
   table t;
   aqr_partition r = { .cost = INFINITY };
   unsigned n = g->n;
+  if (n < 3)
+    return r;
   t.g = g;
   for (unsigned i = 0; i < n; i++)
     for (unsigned j = i + 1; j < n; j++)

@@ -708,6 +708,7 @@ static void strip(const regions* r, hub* hubs, const link* links, uint8_t* gone,
   while (hubs[vertex].degree == 1)
   {
     uint32_t i = hubs[vertex].links;
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): where a vertex has a degree there are links */
     const piece* p = &r->pieces[links[i].piece];
     gone[i] = 1;
     hang(r, hubs, links, i, true);

@@ -17,7 +17,7 @@ static void unscale(const aqr_surface* s, vec3 p, double* out)
  * points suffice. */
 static aqr_origin origin_of(const aqr_surface* s, const aqr_place* at)
 {
-  aqr_index point[9];
+  aqr_index point[9] = { 0 };
   double weight[9], sum = 0;
   unsigned n = 0;
   for (unsigned k = 0; k < 3; k++)

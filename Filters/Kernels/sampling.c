@@ -311,7 +311,7 @@ static aqr_status cross_seams(sampler* m, aqr_index from)
 static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double distance)
 {
   bool allowed;
-  aqr_index id;
+  aqr_index id = AQR_NONE;
   if (m->points >= m->goal || m->n_failed > most_failures * (m->lines->n_lines + free_failures))
     return AQR_OK;
   aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);

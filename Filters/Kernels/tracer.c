@@ -371,7 +371,7 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
   const int most = most_faces + 4 * (int)sqrt((double)s->n_faces);
   for (int i = 0; i < most; i++)
   {
-    double side[3], at;
+    double side[3], at = 0.5;
     unsigned k = vertex < 3 ? opposite_edge(&t->chart, vertex, d, &at) : exit_edge(&t->chart, t->x, d, side);
     if (k == 3) /* beside its triangle by rounding: a little towards the middle it sees an edge again */
     {
@@ -379,11 +379,8 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
       t->x = cx_madd(t->x, inward, to);
       k = exit_edge(&t->chart, t->x, d, side);
     }
-    if (k == 3) /* a triangle without area: over the edge that lies farthest ahead */
-    {
+    if (k == 3) /* a triangle without area: over the middle of the edge that lies farthest ahead */
       k = foremost_edge(&t->chart, d);
-      at = 0.5;
-    }
     else if (vertex == 3)
       at = side[k] / (side[k] - side[(k + 1) % 3]);
     vertex = 3;

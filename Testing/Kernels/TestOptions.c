@@ -325,6 +325,89 @@ AQR_TEST(every_unusable_input_has_its_status)
   CHECK(status_of_input(&input) == AQR_DEGENERATE_INPUT);
 }
 
+AQR_TEST(every_status_has_a_sentence_of_its_own)
+{
+  for (int i = AQR_OK; i <= AQR_INTERNAL + 1; i++)
+    for (int j = AQR_OK; j < i; j++)
+      CHECK(strcmp(aqr_status_string((aqr_status)i), aqr_status_string((aqr_status)j)) != 0);
+}
+
+AQR_TEST(what_is_repaired_is_counted)
+{
+  shape m = shape_sphere(6, 4);
+  size_t n = m.n_triangles;
+  m.triangles = realloc(m.triangles, 3 * (n + 4) * sizeof *m.triangles);
+  int64_t* more = m.triangles + 3 * n;
+  for (int k = 0; k < 3; k++)
+  {
+    more[k] = m.triangles[k];               /* the first once more */
+    more[3 + k] = m.triangles[5 - k];       /* the second turned over */
+    more[6 + k] = m.triangles[6 + k / 2];   /* one point twice */
+    more[9 + k] = m.triangles[(k + 1) % 3]; /* the first beginning elsewhere */
+  }
+  m.n_triangles += 4;
+  aqr_options o = options_for_points(100);
+  aqr_remesher* r = remesh(&m, &o);
+  const aqr_report* report = aqr_remesher_report(r);
+  CHECK(report->duplicate_triangles == 3 && report->degenerate_triangles == 1);
+  CHECK(!survey_mesh(aqr_remesher_mesh(r)).flaw && survey_mesh(aqr_remesher_mesh(r)).euler == 2);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+typedef struct owner
+{
+  int allocations, steps;
+} owner;
+
+static void* owned(void* user, void* old, size_t old_bytes, size_t bytes)
+{
+  owner* o = user;
+  (void)old_bytes;
+  o->allocations++;
+  if (bytes)
+    return realloc(old, bytes);
+  free(old);
+  return NULL;
+}
+
+static int stepped(void* user, double fraction, const char* stage)
+{
+  (void)fraction, (void)stage;
+  ((owner*)user)->steps++;
+  return 1;
+}
+
+/* Hooks are replaced between two runs: memory would be freed by an allocator that does not know it. */
+AQR_TEST(memory_stays_with_the_allocator_it_came_from)
+{
+  shape m = shape_sphere(6, 4);
+  aqr_input input = shape_input(&m);
+  aqr_options o = options_for_points(100);
+  for (int custom = 0; custom < 2; custom++)
+  {
+    owner first = { 0, 0 }, second = { 0, 0 };
+    aqr_hooks hooks = { .user = &first, .reallocate = custom ? owned : NULL };
+    aqr_remesher* r = NULL;
+    CHECK(aqr_remesher_new(&hooks, &r) == AQR_OK);
+    CHECK(aqr_remesher_set_input(r, &input) == AQR_OK && again(r, o) == AQR_OK);
+    hooks = (aqr_hooks){ .user = &second, .reallocate = owned, .progress = stepped };
+    aqr_remesher_set_hooks(r, &hooks);
+    o.curvature_radius *= 2;
+    CHECK(again(r, o) == AQR_OK);
+    CHECK(second.allocations == 0);
+    /* the user data goes with the allocator, where there is one */
+    CHECK((custom ? first.steps : second.steps) > 0);
+    aqr_remesher_set_hooks(r, NULL);
+    o.curvature_radius /= 2;
+    first.steps = second.steps = 0;
+    CHECK(again(r, o) == AQR_OK && first.steps == 0 && second.steps == 0);
+    aqr_remesher_free(r);
+    CHECK(!custom || first.allocations > 0);
+  }
+  shape_free(&m);
+}
+
 AQR_TEST(every_option_out_of_range_is_named)
 {
   shape m = shape_sphere(6, 14);
