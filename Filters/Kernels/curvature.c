@@ -17,9 +17,11 @@ enum
 };
 
 static const double least_radius = 2; /* in mean lengths of the edges around the point */
-static const double full_ball = 14;   /* areas of a point in a squared radius: some 40 points inside */
-static const double spacing = 0.4;    /* between shared balls, in radii: every point is this near to one */
-static const double reach = 0.65;     /* up to here a shared ball is blended in, in radii */
+static const double least_root =
+  3.5; /* in roots of the area around it: less where edges are long and the triangles thin */
+static const double full_ball = 14; /* areas of a point in a squared radius: some 40 points inside */
+static const double spacing = 0.4;  /* between shared balls, in radii: every point is this near to one */
+static const double reach = 0.65;   /* up to here a shared ball is blended in, in radii */
 
 typedef struct lump /* eight numbers, a cache line */
 {
@@ -139,7 +141,7 @@ static void lump_points(void* data, size_t begin, size_t end)
 
 static double radius_at(const job* j, aqr_index v)
 {
-  return fmax(j->radius, least_radius * j->length[v]);
+  return fmax(j->radius, fmin(least_radius * j->length[v], least_root * sqrt(j->lumps[v].area)));
 }
 
 /* Of balls that hold many points neighbours may share one. */
