@@ -9,6 +9,8 @@ import json
 import math
 import os
 import re
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -220,6 +222,73 @@ class Program(unittest.TestCase):
         self.expect_failure(1, ["lines.ply"], self.torus, out, "--lines", self.path("lines.ply"))
         self.expect_failure(1, ["r.txt"], self.torus, out, "--report", self.path("r.txt"))
         self.expect_failure(1, ["p.jpg"], self.torus, out, "--picture", self.path("p.jpg"))
+
+    def expect_old_files_whole(self, folder, before, **how):
+        """Writing any format fails with one line, and every file in the folder stays as it was."""
+        for extension in (".ply", ".obj", ".stl", ".vtk", ".vtp"):
+            out = os.path.join(folder, "out" + extension)
+            with open(out, "wb") as f:
+                f.write(b"old")
+            before["out" + extension] = b"old"
+            run = subprocess.run([PROGRAM, self.torus, out], capture_output=True, text=True, timeout=120, **how)
+            self.assertEqual((run.returncode, run.stderr.count("\n")), (1, 1), extension + run.stderr)
+            self.assertIn(out + " cannot be written: the disk may be full", run.stderr.replace(": cannot", " cannot"))
+            now = {}
+            for entry in os.scandir(folder):
+                with open(entry.path, "rb") as f:
+                    now[entry.name] = f.read()
+            self.assertEqual(now, before)
+
+    def test_a_disk_that_fills_up_leaves_the_old_files(self):
+        # As a full disk does, a limit on the size of files makes writing fail in the middle.
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))
+
+        os.mkdir(self.path("limited"))
+        self.expect_old_files_whole(self.path("limited"), {}, preexec_fn=limit, restore_signals=False)
+
+    def mount(self, folder, options):
+        subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", folder], check=True, capture_output=True)
+
+    def test_a_disk_that_is_full_or_read_only_leaves_the_old_files(self):
+        folder = self.path("disk")
+        os.mkdir(folder)
+        try:
+            self.mount(folder, "size=64k")
+        except (OSError, subprocess.CalledProcessError):
+            self.skipTest("file systems cannot be mounted here")
+        try:
+            with open(os.path.join(folder, "filler"), "wb") as f:
+                f.write(b"x" * 32768)
+            self.expect_old_files_whole(folder, {"filler": b"x" * 32768})
+            self.mount(folder, "remount,ro")
+            run = self.run_program(self.torus, os.path.join(folder, "out.ply"))
+            self.assertEqual(run.returncode, 1)
+            self.assertIn("Read-only file system", run.stderr)
+            with open(os.path.join(folder, "out.ply"), "rb") as f:
+                self.assertEqual(f.read(), b"old")
+        finally:
+            subprocess.run(["umount", folder], check=True)
+
+    def test_no_environment_variable_changes_the_result(self):
+        out = self.path("out.vtp")
+
+        def result(environment):
+            run = subprocess.run(
+                [PROGRAM, self.torus, out], capture_output=True, text=True, timeout=120, env=environment)
+            self.assertEqual((run.returncode, run.stderr), (0, ""), environment)
+            with open(out, "rb") as f:
+                return f.read()
+
+        search = {k: os.environ[k] for k in ("LD_LIBRARY_PATH",) if k in os.environ}
+        plain = result(search)
+        for name, value in {
+            "LC_ALL": "de_DE.UTF-8", "LANG": "tr_TR.UTF-8", "TZ": "Asia/Kathmandu", "HOME": "/nowhere",
+            "VTK_SMP_BACKEND_IN_USE": "Sequential", "VTK_SMP_MAX_THREADS": "1", "OMP_NUM_THREADS": "1",
+            "VTK_LOGGER_LEVEL": "9", "TMPDIR": "/nowhere", "MALLOC_PERTURB_": "85",
+        }.items():
+            self.assertEqual(result(dict(search, **{name: value})), plain, name)
 
     def test_no_display_is_said_before_computing(self):
         self.expect_failure(

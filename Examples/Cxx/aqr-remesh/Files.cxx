@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Files.h"
 
+#include "vtkCellArray.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkOBJReader.h"
@@ -22,6 +23,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -177,6 +179,53 @@ bool Write(WriterT* writer, const std::string& file, vtkPolyData* surface)
 }
 
 //------------------------------------------------------------------------------
+// Whether a binary .ply file is as long as its header says.
+bool IsWholePly(const std::string& file, vtkPolyData* surface)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::uintmax_t bytes = 0;
+  std::uintmax_t items = 0;
+  for (std::string line; std::getline(stream, line) && line != "end_header";)
+  {
+    std::istringstream words(line);
+    std::string word;
+    std::string type;
+    words >> word >> type;
+    if (word == "element")
+    {
+      words >> items;
+    }
+    else if (word == "property" && type == "list")
+    {
+      bytes += items + 4 * static_cast<std::uintmax_t>(surface->GetPolys()->GetNumberOfConnectivityIds());
+    }
+    else if (word == "property")
+    {
+      bytes += items * (type == "double" ? 8 : type == "uchar" ? 1 : 4);
+    }
+  }
+  std::error_code code;
+  return stream && fs::file_size(file, code) == static_cast<std::uintmax_t>(stream.tellg()) + bytes && !code;
+}
+
+//------------------------------------------------------------------------------
+// Whether a .obj file has all lines of the points and polygons of a surface.
+bool IsWholeObj(const std::string& file, vtkPolyData* surface)
+{
+  std::ifstream stream(file, std::ios::binary);
+  vtkIdType points = 0;
+  vtkIdType polygons = 0;
+  bool ended = false;
+  for (std::string line; std::getline(stream, line);)
+  {
+    ended = !stream.eof(); // the end came after the line's
+    points += line.compare(0, 2, "v ") == 0;
+    polygons += line.compare(0, 2, "f ") == 0;
+  }
+  return ended && points == surface->GetNumberOfPoints() && polygons == surface->GetNumberOfPolys();
+}
+
+//------------------------------------------------------------------------------
 bool WriteByExtension(const std::string& extension, const std::string& file, vtkPolyData* surface)
 {
   if (extension == ".vtp")
@@ -195,13 +244,14 @@ bool WriteByExtension(const std::string& extension, const std::string& file, vtk
   }
   if (extension == ".ply")
   {
+    // By itself this writer does not notice that the disk is full; nor does the next.
     vtkNew<vtkPLYWriter> writer;
-    return Write(writer.Get(), file, surface);
+    return Write(writer.Get(), file, surface) && IsWholePly(file, surface);
   }
   if (extension == ".obj")
   {
     vtkNew<vtkOBJWriter> writer;
-    return Write(writer.Get(), file, surface);
+    return Write(writer.Get(), file, surface) && IsWholeObj(file, surface);
   }
   vtkNew<vtkTriangleFilter> triangulate;
   triangulate->SetInputData(surface);
@@ -341,10 +391,11 @@ void OutputFiles::WriteSurface(const std::string& file, vtkPolyData* surface)
 {
   this->Errors.TakeError();
   const bool written = WriteByExtension(Extension(file), this->Temporary(file), surface);
-  const std::string error = this->Errors.TakeError();
-  if (!written || !error.empty())
+  // VTK's words for it differ from writer to writer, and some name the temporary file.
+  if (const std::string error = this->Errors.TakeError(); !written || !error.empty())
   {
-    throw FileError(file, "cannot be written: " + (error.empty() ? "the disk may be full" : error));
+    const bool other = written && error.find("disk space") == std::string::npos;
+    throw FileError(file, "cannot be written: " + (other ? error : "the disk may be full"));
   }
 }
 
