@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make the pictures of the user guide: make_pictures.py FOLDER
+"""Make the pictures of the user guide: make_pictures.py FOLDER [PARAMETER...]
 
 One picture for a parameter, with the values side by side; every surface is made here."""
 import math
 import os
 import sys
 
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkContourFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (
     vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
@@ -17,13 +18,13 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from anisotropicquadremesher import vtkAnisotropicQuadRemesher
 
 
-def grid(n, m, shape):
+def grid(n, m, shape, closed=True):
     points, cells = vtkPoints(), vtkCellArray()
     for i in range(n):
         for j in range(m):
             points.InsertNextPoint(shape(i / n, j / m))
-    for i in range(n):
-        for j in range(m):
+    for i in range(n if closed else n - 1):
+        for j in range(m if closed else m - 1):
             a, b = i * m + j, (i + 1) % n * m + j
             c, d = (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m
             for triangle in ((a, b, c), (a, c, d)):
@@ -48,15 +49,49 @@ def flange(u, v):
     return radius * math.cos(2 * math.pi * u), radius * math.sin(2 * math.pi * u), z0 + t * (z1 - z0)
 
 
+def sheet(u, v):
+    """An open sheet whose border is scalloped."""
+    angle, radius = 2 * math.pi * (0.05 + 0.9 * u), 1 + 2 * v + 0.12 * v * math.cos(36 * math.pi * u)
+    return radius * math.cos(angle), radius * math.sin(angle), 0.4 * math.cos(2 * radius + angle)
+
+
+def cushion():
+    """A cushion with three tunnels that are narrower than its faces, where a function vanishes."""
+    size, step = (90, 70, 30), 0.05
+    image = vtkImageData()
+    image.SetDimensions(size)
+    image.SetSpacing(step, step, step)
+    image.AllocateScalars(VTK_FLOAT, 1)
+    for k in range(size[2]):
+        for j in range(size[1]):
+            for i in range(size[0]):
+                x, y, z = (step * (index - (count - 1) / 2) for index, count in zip((i, j, k), size))
+                value = x * x / 4 + y * y / 2.25 + z * z / 0.25 - 1
+                for tunnel in ((-0.8, -0.2), (0.1, 0.5), (0.7, -0.4)):
+                    value += 1.8 * math.exp(-((x - tunnel[0]) ** 2 + (y - tunnel[1]) ** 2) / 0.012)
+                image.SetScalarComponentFromDouble(i, j, k, 0, value)
+    contour = vtkContourFilter()
+    contour.SetInputData(image)
+    contour.SetValue(0, 0.0)
+    contour.Update()
+    return contour.GetOutput()
+
+
 RING, FLANGE = grid(160, 60, ring), grid(120, 60, flange)
+SHEET, CUSHION = grid(200, 60, sheet, closed=False), cushion()
 PICTURES = {
     "Tolerance": (RING, [0.004, 0.001, 0.0003], {}),
     "TargetNumberOfPoints": (RING, [500, 1500, 5000], {"DensityMode": 1}),
     "LargestSpacing": (FLANGE, [0.15, 0.05, 0.02], {"Tolerance": 0.004}),
     "CurvatureRadius": (RING, [0.0, 0.01, 0.05], {"Tolerance": 0.001}),
     "SmoothingIterations": (RING, [0, 5, 50], {"Tolerance": 0.001}),
+    "ConfidenceAngle": (RING, [5.0, 30.0, 90.0], {"Tolerance": 0.001}),
+    "BoundaryLines": (SHEET, [False, True], {"Tolerance": 0.001}),
+    "PreserveTopology": (CUSHION, [False, True], {"DensityMode": 1, "TargetNumberOfPoints": 60, "FeatureLines": False}),
     "FeatureLines": (FLANGE, [False, True], {"Tolerance": 0.002}),
     "LargestValence": (RING, [4, 5, 8], {"Tolerance": 0.002}),
+    "ConvexPartition": (SHEET, [False, True], {"Tolerance": 0.004, "LargestValence": 12, "BoundaryLines": False}),
+    "Seed": (RING, [0, 1, 2], {"Tolerance": 0.002}),
 }
 
 
@@ -78,7 +113,8 @@ def picture(name, surface, values, fixed):
         actor.GetProperty().EdgeVisibilityOn()
         label = vtkTextActor()
         remesh.Update()
-        label.SetInput("%s %s: %d points" % (name, value, remesh.GetOutput().GetNumberOfPoints()))
+        mesh = remesh.GetOutput()
+        label.SetInput("%s %s: %d points, %d faces" % (name, value, mesh.GetNumberOfPoints(), mesh.GetNumberOfPolys()))
         label.SetPosition(10, 10)
         label.GetTextProperty().SetColor(0, 0, 0)
         label.GetTextProperty().SetFontSize(16)
@@ -100,9 +136,10 @@ def picture(name, surface, values, fixed):
     return writer
 
 
-def main(folder):
+def main(folder, *names):
     os.makedirs(folder, exist_ok=True)
-    for name, (surface, values, fixed) in PICTURES.items():
+    for name in names or PICTURES:
+        surface, values, fixed = PICTURES[name]
         writer = picture(name, surface, values, fixed)
         writer.SetFileName(os.path.join(folder, name + ".png"))
         writer.Write()
