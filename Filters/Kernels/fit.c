@@ -18,8 +18,8 @@ enum
 static const double least_residual = 1e-3; /* of the first, squared: the solver stops */
 static const double hold_normal = 1e-3;    /* of a vertex in its place, relative to its part of the error */
 static const double hold_first = 5;        /* along the surface, where the error says little, in the first round */
-static const double hold_tangent = 0.25;   /* and in the others */
-static const double least_gain = 0.9;      /* of the error: for less, no vertex leaves its lines */
+static const double hold_tangent = 0.02;   /* and in the others */
+static const double hold_edge = 0.05;      /* against turning, relative to its ends' parts of the error */
 static const double farthest_move = 0.3;   /* of the shortest edge at a vertex, in one round */
 static const double least_sine = 0.3;      /* of a corner's angle: a move does not make it smaller than that */
 static const double farthest_sample =
@@ -64,12 +64,13 @@ typedef struct fit
   size_t* first_corner; /* per vertex, into `corners`; n_vertices + 2 */
   aqr_index* corners;   /* 3 * triangle + corner */
   vec3 *move, *residual, *direction, *image, *before;
+  vec3* across;    /* per edge: along the surface and across the edge, scaled by the root of what holds it */
+  double* trace;   /* per vertex: of its part of the error */
   double* inverse; /* per vertex: of its own 3 x 3 block: xx yy zz xy xz yz; 0 where it stays */
   double* error;   /* per vertex: of its triangles, before the last move */
   uint8_t* back;   /* per vertex: the last move was damped or taken back */
   uint8_t* folds;  /* per half-edge: the corner where it begins would fold */
   double hold;     /* along the surface */
-  double worth;    /* what the error around a vertex may be after a move, relative to before */
   bool partly;     /* only triangles with vertices taken back are measured */
 } fit;
 
@@ -113,12 +114,14 @@ static aqr_status allocate(aqr_context* c, fit* f)
   f->direction = AQR_NEW(c, vec3, n);
   f->image = AQR_NEW(c, vec3, n);
   f->before = AQR_NEW(c, vec3, n);
+  f->across = AQR_NEW(c, vec3, m->n_half_edges / 2);
+  f->trace = AQR_NEW(c, double, n);
   f->inverse = AQR_NEW(c, double, 6 * n);
   f->error = AQR_NEW(c, double, n);
   f->back = AQR_NEW0(c, uint8_t, n);
   f->folds = AQR_NEW(c, uint8_t, m->n_half_edges);
   return f->triangles && f->first_corner && f->corners && f->move && f->residual && f->direction && f->image &&
-             f->before && f->inverse && f->error && f->back && f->folds
+             f->before && f->across && f->trace && f->inverse && f->error && f->back && f->folds
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
 }
@@ -135,6 +138,8 @@ static void release(aqr_context* c, fit* f)
   AQR_DROP(c, f->direction, n);
   AQR_DROP(c, f->image, n);
   AQR_DROP(c, f->before, n);
+  AQR_DROP(c, f->across, f->m->n_half_edges / 2);
+  AQR_DROP(c, f->trace, n);
   AQR_DROP(c, f->inverse, 6 * n);
   AQR_DROP(c, f->error, n);
   AQR_DROP(c, f->back, n);
@@ -260,6 +265,41 @@ static vec3 held(const fit* f, const aqr_vertex* v, double trace, vec3 x)
   return v3_scale(v3_madd(v3_scale(x, f->hold), (hold_normal - f->hold) * along, v->normal), trace);
 }
 
+/* The part of the error that each vertex stands for. */
+static void weigh(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    f->trace[v] = 0;
+    for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
+    {
+      const triangle* t = &f->triangles[f->corners[i] / 3];
+      for (unsigned k = 0; k < samples; k++)
+      {
+        double w = barycentric[k][f->corners[i] % 3];
+        vec3 n = v3((double)t->at[k].normal[0], (double)t->at[k].normal[1], (double)t->at[k].normal[2]);
+        f->trace[v] += w * w * v3_norm2(n);
+      }
+    }
+  }
+}
+
+/* Edges are held against turning: their ends may move along the surface together, as lines do that are moved or spaced
+ * anew, but not one against the other across the edge. */
+static void hold_edges(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  const aqr_polygon_mesh* m = f->m;
+  for (size_t e = begin; e < end; e++)
+  {
+    aqr_index u = aqr_pm_from(m, (aqr_index)(2 * e)), v = aqr_pm_to(m, (aqr_index)(2 * e));
+    const aqr_vertex *a = &m->vertices[u], *b = &m->vertices[v];
+    vec3 across = v3_cross(v3_add(a->normal, b->normal), v3_sub(b->position, a->position));
+    f->across[e] = v3_scale(v3_unit_or(across, v3(0, 0, 0)), sqrt(hold_edge * (f->trace[u] + f->trace[v])));
+  }
+}
+
 /* Sets up each vertex' own block and the right-hand side. Fixed vertices have none. */
 static void begin_rows(void* data, size_t begin, size_t end)
 {
@@ -285,11 +325,23 @@ static void begin_rows(void* data, size_t begin, size_t end)
         right = v3_madd(right, (double)t->at[k].distance, n);
       }
     }
-    double trace = a[0] + a[1] + a[2];
+    aqr_index h = x->out;
+    do
+    {
+      vec3 n = f->across[h >> 1];
+      a[0] += n.x * n.x;
+      a[1] += n.y * n.y;
+      a[2] += n.z * n.z;
+      a[3] += n.x * n.y;
+      a[4] += n.x * n.z;
+      a[5] += n.y * n.z;
+      h = aqr_pm_next_around(f->m, h);
+    } while (h != x->out);
+    double trace = f->trace[v];
     vec3 e[3] = { held(f, x, trace, v3(1, 0, 0)), held(f, x, trace, v3(0, 1, 0)), held(f, x, trace, v3(0, 0, 1)) };
     const double sum[6] = { a[0] + e[0].x, a[1] + e[1].y, a[2] + e[2].z, a[3] + e[0].y, a[4] + e[0].z, a[5] + e[1].z };
     double* inverse = f->inverse + 6 * v;
-    if (!invert(sum, inverse))
+    if (x->kind != AQR_VERTEX_INTERIOR || !invert(sum, inverse))
       memset(inverse, 0, 6 * sizeof *inverse);
     f->residual[v] = right;
     f->direction[v] = times_inverse(inverse, right);
@@ -322,7 +374,6 @@ static void multiply(void* data, size_t begin, size_t end)
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
-    double trace = 0;
     vec3 sum = v3(0, 0, 0);
     if (!(f->inverse[6 * v] > 0))
       continue;
@@ -334,10 +385,16 @@ static void multiply(void* data, size_t begin, size_t end)
         double w = barycentric[k][f->corners[i] % 3], b = w * (double)t->image[k];
         vec3 n = v3((double)t->at[k].normal[0], (double)t->at[k].normal[1], (double)t->at[k].normal[2]);
         sum = v3_madd(sum, b, n);
-        trace += w * w * v3_norm2(n);
       }
     }
-    f->image[v] = v3_add(sum, held(f, &f->m->vertices[v], trace, f->direction[v]));
+    aqr_index h = f->m->vertices[v].out;
+    do
+    {
+      vec3 n = f->across[h >> 1], d = v3_sub(f->direction[v], f->direction[aqr_pm_to(f->m, h)]);
+      sum = v3_madd(sum, v3_dot(n, d), n);
+      h = aqr_pm_next_around(f->m, h);
+    } while (h != f->m->vertices[v].out);
+    f->image[v] = v3_add(sum, held(f, &f->m->vertices[v], f->trace[v], f->direction[v]));
   }
 }
 
@@ -349,6 +406,8 @@ static aqr_status solve(aqr_context* c, fit* f, double at)
   aqr_status status = AQR_OK;
   size_t n = f->m->n_vertices;
   double rho = 0, first;
+  AQR_TRY(aqr_parallel(c, n, weigh, f, at, at));
+  AQR_TRY(aqr_parallel(c, f->m->n_half_edges / 2, hold_edges, f, at, at));
   AQR_TRY(aqr_parallel(c, n, begin_rows, f, at, at));
   for (size_t v = 0; v < n; v++)
     rho += v3_dot(f->residual[v], f->direction[v]);
@@ -496,13 +555,13 @@ static double error_around(const fit* f, size_t v)
   return sum;
 }
 
-/* Takes the last move back where it was not worth it. */
+/* Takes the last move back where the error grew. */
 static void take_back(void* data, size_t begin, size_t end)
 {
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
-    f->back[v] = error_around(f, v) > f->worth * f->error[v];
+    f->back[v] = error_around(f, v) > f->error[v];
     if (f->back[v])
       f->m->vertices[v].position = f->before[v];
   }
@@ -547,7 +606,6 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
   {
     double at = 0.25 + 0.65 * round / rounds, next = 0.25 + 0.65 * (round + 1) / rounds;
     f.hold = round ? hold_tangent : hold_first;
-    f.worth = round ? least_gain : 1;
     AQR_TRY(aqr_parallel(c, n, note_error, &f, at, at));
     AQR_TRY(solve(c, &f, at));
     AQR_TRY(aqr_parallel(c, n, limit, &f, at, at));

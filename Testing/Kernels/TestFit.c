@@ -120,6 +120,33 @@ AQR_TEST(a_lattice_on_a_torus_loses_half_of_its_error)
   CHECK(c.bytes == 0);
 }
 
+/* Its meridians in bunches, as lines are that were traced one by one. */
+static aqr_vertex on_bunched_torus(double s, double t)
+{
+  return on_torus(s + 0.012 * sin(3.14159265358979324 * 10 * s), t);
+}
+
+/* Held back one by one, vertices keep the spacing they were given; held by their edges, whole lines may move. */
+AQR_TEST(bunched_lines_lose_as_much_of_their_error_as_even_ones)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh even = { 0 }, bunched = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 100, 100, true, on_torus, &s));
+  CHECK(grid_of_quads(&c, 20, 40, true, on_torus, &even));
+  CHECK(grid_of_quads(&c, 20, 40, true, on_bunched_torus, &bunched));
+  set_places(&s, &even);
+  set_places(&s, &bunched);
+  double before = rms(&bunched, from_torus, is_anywhere) / rms(&even, from_torus, is_anywhere);
+  CHECK(aqr_fit(&c, &s, NULL, &even) == AQR_OK && aqr_fit(&c, &s, NULL, &bunched) == AQR_OK);
+  double after = rms(&bunched, from_torus, is_anywhere) / rms(&even, from_torus, is_anywhere);
+  CHECK_BELOW(after, 1.05 * before);
+  aqr_polygon_mesh_free(&c, &even);
+  aqr_polygon_mesh_free(&c, &bunched);
+  free_surface(&s);
+  CHECK(c.bytes == 0);
+}
+
 static aqr_vertex on_dome(double s, double t)
 {
   vec3 p = v3(s, t, 2 * s * (1 - s) * t * (1 - t));
@@ -241,7 +268,7 @@ AQR_TEST(a_fit_that_runs_out_of_memory_says_so)
   aqr_context plain = { 0 };
   aqr_surface s;
   CHECK(surface_of_grid(&plain, 20, 10, true, on_torus, &s));
-  for (size_t allowed = 0; allowed < 14; allowed++)
+  for (size_t allowed = 0; allowed < 17; allowed++)
   {
     ration r = { SIZE_MAX };
     aqr_context c = { .hooks = { .user = &r, .reallocate = rationed } };
@@ -254,7 +281,7 @@ AQR_TEST(a_fit_that_runs_out_of_memory_says_so)
     aqr_polygon_mesh_free(&c, &m);
     CHECK(c.bytes == 0);
   }
-  CHECK(failed > 5 && failed < 14);
+  CHECK(failed > 5 && failed < 17);
   free_surface(&s);
 }
 
