@@ -2,8 +2,11 @@
 /* What each option and each status of aqr.h promises. */
 #include "test.h"
 
+#include "examine.h"
 #include "remesh.h"
 #include "solids.h"
+
+#include <float.h>
 
 static size_t points_of(const aqr_remesher* r)
 {
@@ -446,6 +449,65 @@ AQR_TEST(every_option_out_of_range_is_named)
   shape_free(&m);
 }
 
+/* What is allowed must be met or missed, but never end in a broken mesh; all else is refused. */
+AQR_TEST(no_value_of_any_option_is_without_a_defined_outcome)
+{
+  const double wild[] = { NAN, INFINITY, -INFINITY, -1, -0.0, 0, DBL_TRUE_MIN, 1e-6, 1e-4, 0.2, 1, 90, 180, 1e9,
+    DBL_MAX };
+  const double low[] = { 1e-7, 0, 0, 1e-6, 1e-4 }, high[] = { 0.1, 0.2, 90, 180, 1 };
+  shape shapes[] = { shape_sphere(3, 16), shape_cylinder(4, 17) };
+  for (int s = 0; s < 2; s++)
+    for (size_t k = 0; k < 5 * sizeof wild / sizeof *wild; k++)
+    {
+      double x = wild[k / 5];
+      aqr_options o = options_for_points(30);
+      if (k % 5 == 0 && x >= 1e-7 && x < 1e-3)
+        continue;                                                          /* would only be slow */
+      o.density = k % 5 == 4 ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE; /* which bounds the finest spacing */
+      o.tolerance = 0.02;
+      o.largest_spacing = 0.3;
+      double* value[] = { &o.tolerance, &o.curvature_radius, &o.confidence_angle, &o.feature_angle,
+        &o.largest_spacing };
+      *value[k % 5] = x;
+      aqr_input input = shape_input(&shapes[s]);
+      aqr_status status;
+      const char* fault = examine(&input, &o, &status);
+      aqr_status wanted = x >= low[k % 5] && x <= high[k % 5] ? AQR_OK : AQR_BAD_OPTION;
+      if (fault || status != wanted)
+        printf("shape %d, option %zu, value %g: %s, %s\n", s, k % 5, x, aqr_status_string(status), fault ? fault : "");
+      CHECK(!fault && status == wanted);
+    }
+  shape_free(&shapes[0]);
+  shape_free(&shapes[1]);
+}
+
+AQR_TEST(options_that_contradict_each_other_still_give_a_valid_mesh)
+{
+  shape shapes[] = { shape_cube(3, 0.2, 18), shape_cylinder(5, 19) };
+  for (int s = 0; s < 2; s++)
+    for (int k = 0; k < 9; k++)
+    {
+      aqr_options o = options_for_points(k == 0 ? 4 : k == 1 ? 3000 : 60);
+      o.largest_spacing = k == 2 ? 1e-4 : k == 3 ? 1 : o.largest_spacing; /* far finer, far coarser than the target */
+      o.curvature_radius = k == 4 ? 0.2 : o.curvature_radius;             /* larger than the spacing */
+      o.smoothing_iterations = k == 4 ? 1000 : o.smoothing_iterations;
+      o.confidence_angle = k == 5 ? 0 : k == 6 ? 90 : o.confidence_angle; /* nothing, everything is trusted */
+      o.feature_angle = k == 5 ? 1e-6 : k == 6 ? 180 : o.feature_angle;   /* everything, nothing is a crease */
+      o.largest_valence = k == 7 ? 4 : k == 8 ? 64 : o.largest_valence;
+      o.convex_partition = k != 8;
+      o.seed = k == 8 ? UINT32_MAX : 0;
+      o.feature_lines = k == 7 ? -5 : 1; /* a truth value is what C takes for one */
+      aqr_input input = shape_input(&shapes[s]);
+      aqr_status status;
+      const char* fault = examine(&input, &o, &status);
+      if (fault || status != AQR_OK)
+        printf("shape %d, case %d: %s, %s\n", s, k, aqr_status_string(status), fault ? fault : "");
+      CHECK(!fault && status == AQR_OK);
+    }
+  for (int s = 0; s < 2; s++)
+    shape_free(&shapes[s]);
+}
+
 /* ---- hooks ---- */
 
 typedef struct watcher
@@ -462,6 +524,24 @@ static int watch(void* user, double fraction, const char* stage)
   w->last = fraction;
   return w->calls++ < w->allowed;
 }
+
+AQR_TEST(a_target_that_cannot_be_met_is_said_to_be_missed)
+{
+  shape m = shape_sphere(5, 21);
+  aqr_options o = options_for_points(2147483647);
+  aqr_remesher* r = remesh(&m, &o);
+  printf("%zu points\n", points_of(r));
+  CHECK(aqr_remesher_report(r)->target_missed && !survey_mesh(aqr_remesher_mesh(r)).flaw);
+  o.target_points = 4;
+  CHECK(again(r, o) == AQR_OK);
+  survey few = survey_mesh(aqr_remesher_mesh(r));
+  printf("%zu points for a target of 4\n", few.points);
+  CHECK(!few.flaw && few.euler == 2 && few.loops == 0);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- hooks ---- */
 
 AQR_TEST(cancelling_anywhere_leaves_nothing_and_the_next_run_works)
 {
