@@ -17,7 +17,7 @@ int TestDirectionsImage(int argc, char* argv[])
       AddActor(renderer, surface);
       vtkNew<vtkMaskPoints> some;
       some->SetInputConnection(filter->GetOutputPort(vtkAnisotropicQuadRemesher::PRINCIPAL_DIRECTIONS));
-      some->SetOnRatio(7);
+      some->SetOnRatio(3);
       vtkNew<vtkLineSource> line;
       line->SetPoint1(-0.5, 0.0, 0.0);
       line->SetPoint2(0.5, 0.0, 0.0);
@@ -27,11 +27,12 @@ int TestDirectionsImage(int argc, char* argv[])
         glyphs->SetInputConnection(some->GetOutputPort());
         glyphs->SetSourceConnection(line->GetOutputPort());
         glyphs->SetOrientationArray(minimum ? "MinDirection" : "MaxDirection");
-        glyphs->SetScaleFactor(0.15);
+        glyphs->SetScaleFactor(0.3);
         glyphs->ScalarVisibilityOff();
         vtkNew<vtkActor> actor;
         actor->SetMapper(glyphs);
         actor->GetProperty()->SetColor(minimum ? 0.1 : 0.9, 0.2, minimum ? 0.9 : 0.1);
+        actor->GetProperty()->SetLineWidth(minimum ? 5.0F : 1.0F);
         actor->GetProperty()->LightingOff();
         renderer->AddActor(actor);
       }
