@@ -23,6 +23,6 @@ int TestFeaturesImage(int argc, char* argv[])
       edges->ScalarVisibilityOff();
       const auto actor = AddActor(renderer, edges);
       actor->GetProperty()->SetColor(0.8, 0.1, 0.1);
-      actor->GetProperty()->SetLineWidth(3.0F);
+      actor->GetProperty()->SetLineWidth(6.0F);
     });
 }
