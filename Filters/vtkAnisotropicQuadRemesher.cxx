@@ -228,7 +228,8 @@ public:
          << ", \"lines\": " << report->lines << ", \"line_samples\": " << report->line_samples
          << ", \"proximity_queries\": " << report->proximity_queries << ", \"topology_cuts\": " << report->topology_cuts
          << ", \"coarsened_components\": " << report->coarsened_components
-         << ", \"target_missed\": " << report->target_missed << ", \"tolerance\": " << report->tolerance;
+         << ", \"topology_lost\": " << report->topology_lost << ", \"target_missed\": " << report->target_missed
+         << ", \"tolerance\": " << report->tolerance;
     if (const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher()))
     {
       size_t sides[3] = { 0, 0, 0 };
@@ -294,6 +295,10 @@ public:
     {
       this->Warnings.push_back(std::to_string(report->coarsened_components) +
                                " components were too small to carry lines at this density and were decimated instead.");
+    }
+    if (report->topology_lost)
+    {
+      this->Warnings.push_back("No attempt kept the input's topology: the output has another Euler number.");
     }
     const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher());
     if (report->target_missed && mesh)

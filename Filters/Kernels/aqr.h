@@ -236,6 +236,7 @@ extern "C"
     size_t proximity_queries;    /**< questions for the nearest other line */
     size_t topology_cuts;        /**< lines added so that every region is a disk */
     size_t coarsened_components; /**< components that carried no lines and were decimated instead */
+    size_t topology_lost;        /**< 1 when preserve_topology was asked for and no attempt kept the Euler number */
     size_t target_missed;        /**< 1 when target_points could not be met within 5 % */
     double tolerance;            /**< used, as a fraction of the diagonal */
   } aqr_report;

@@ -16,7 +16,7 @@ enum
   cookie = 0x41515231,
   most_attempts = 9, /* at meeting a target number of points ... */
   fine_attempts = 4, /* ... of which the first ask for better than what counts as met */
-  most_retries = 4,  /* at a tolerance whose lines lost the topology */
+  most_retries = 12, /* at a tolerance whose lines lost the topology */
   most_cuts = 24     /* rounds of arcs that keep the topology */
 };
 
@@ -540,10 +540,8 @@ static aqr_status run_sizing(aqr_remesher* r, const aqr_options* o)
     sharpest / fmax(o->curvature_radius, least_radius), &r->sizing);
 }
 
-static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
+static aqr_status meet_tolerance(aqr_remesher* r, const aqr_options* o)
 {
-  if (o->density == AQR_DENSITY_POINTS)
-    return meet_target(r, o);
   aqr_reached reached;
   double tolerance = o->tolerance;
   aqr_status status = aqr_sizing_set(&r->context, r->surface, o->tolerance, &r->sizing);
@@ -556,6 +554,14 @@ static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
     if (status == AQR_OK)
       status = attempt(r, o, tolerance, 0, &reached);
   }
+  return status;
+}
+
+static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
+{
+  aqr_status status = o->density == AQR_DENSITY_POINTS ? meet_target(r, o) : meet_tolerance(r, o);
+  if (status == AQR_OK)
+    r->report.topology_lost = o->preserve_topology && !keeps_topology(r);
   return status;
 }
 
