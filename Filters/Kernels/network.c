@@ -97,7 +97,7 @@ static int turn_on(const aqr_crossing* x, aqr_index chord)
 static void end_at(const builder* b, aqr_index f, const aqr_sample* a, bool moving, int64_t w[3])
 {
   aqr_index h = aqr_sample_half_edge(b->s, a, f), k = h % 3;
-  int64_t t = 2 * (int64_t)(a->t * (double)(AQR_PLACES / 2)) + 1;
+  int64_t t = 2 * (int64_t)(a->t * (double)(AQR_PLACES >> 1)) + 1;
   if (t >= AQR_PLACES)
     t = AQR_PLACES - 1;
   if (h != a->edge)

@@ -453,17 +453,17 @@ static aqr_status add_pieces_on(regions* r, unsigned k, aqr_index first_cell)
   double start = 0;
   for (size_t i = first; i <= end; i++)
   {
-    const border_mark* m = i < end ? &a->marks[i] : NULL;
-    if (m && !m->kept)
+    bool last = i == end;
+    if (!last && !a->marks[i].kept)
       continue;
-    p.to = m ? vertex_beside(r, m, false) : aqr_to(s, h);
+    p.to = last ? aqr_to(s, h) : vertex_beside(r, &a->marks[i], false);
     p.t = halfway(r, k, start, true);
     aqr_status status = add_piece(r, p);
-    if (status != AQR_OK || !m)
+    if (status != AQR_OK || last)
       return status;
-    start = position_on(r, h, m);
-    p.cell = first_cell + m->cell;
-    p.from = vertex_beside(r, m, true);
+    start = position_on(r, h, &a->marks[i]);
+    p.cell = first_cell + a->marks[i].cell;
+    p.from = vertex_beside(r, &a->marks[i], true);
   }
   return AQR_OK;
 }
