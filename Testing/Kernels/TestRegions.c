@@ -2,76 +2,10 @@
 /* Regions between lines drawn by hand, on surfaces whose Euler number is known. */
 #include "test.h"
 
-#include "model.h"
+#include "drawing.h"
 #include "regions.h"
+#include "remesh.h"
 #include "solids.h"
-
-typedef struct drawing
-{
-  model e;
-  aqr_chains chains;
-  aqr_lines lines;
-} drawing;
-
-static drawing draw_on(shape m)
-{
-  drawing d = { .e = model_surface(m) };
-  CHECK(aqr_chains_build(&d.e.c, &d.e.s, 45, &d.chains) == AQR_OK);
-  CHECK(aqr_lines_init(&d.e.c, &d.e.s, &d.lines) == AQR_OK);
-  return d;
-}
-
-static void drawing_free(drawing* d)
-{
-  aqr_lines_free(&d->e.c, &d->lines);
-  aqr_chains_free(&d->e.c, &d->chains);
-  model_free(&d->e);
-}
-
-static aqr_sample place_on(const drawing* d, aqr_index h, double t, aqr_index face)
-{
-  aqr_index edge = aqr_edge_of(&d->e.s, h);
-  t = edge == h ? t : 1 - t;
-  return (aqr_sample){ .p = aqr_edge_point(&d->e.s, edge, t), .t = t, .edge = edge, .face = face };
-}
-
-static void add(drawing* d, aqr_sample* samples, size_t n, bool closed)
-{
-  uint8_t end = closed ? AQR_END_LOOP : AQR_END_PROXIMITY;
-  aqr_line line = { .count = n, .ends = { end, end }, .closed = closed, .partner = { AQR_NONE, AQR_NONE } };
-  samples[n - 1].face = samples[n - 2].face;
-  CHECK(aqr_lines_add(&d->e.c, &d->lines, &d->e.s, &line, samples) == AQR_OK);
-}
-
-/* A circle: where the surface meets a sphere. Closed, around one spot. */
-static void add_circle(drawing* d, vec3 centre, double radius)
-{
-  const aqr_surface* s = &d->e.s;
-  aqr_sample* samples = malloc((s->n_faces + 1) * sizeof *samples);
-  double* height = malloc(s->n_points * sizeof *height);
-  size_t n = 0;
-  aqr_index first = AQR_NONE;
-  for (aqr_index v = 0; v < s->n_points; v++)
-    height[v] = v3_norm(v3_sub(model_shape_point(&d->e, aqr_point(s, v)), centre)) - radius;
-  for (aqr_index h = 0; h < 3 * s->n_faces && first == AQR_NONE; h++)
-    if (height[aqr_from(s, h)] < 0 && height[aqr_to(s, h)] >= 0)
-      first = h;
-  CHECK(first != AQR_NONE);
-  for (aqr_index h = first; first != AQR_NONE;)
-  {
-    double a = height[aqr_from(s, h)], b = height[aqr_to(s, h)];
-    samples[n++] = place_on(d, h, a / (a - b), aqr_face_of(h));
-    if (n > 1 && h == first)
-      break;
-    aqr_index k = aqr_next(h);
-    while ((height[aqr_from(s, k)] < 0) == (height[aqr_to(s, k)] < 0))
-      k = aqr_next(k);
-    h = aqr_twin(s, k);
-  }
-  add(d, samples, n, true);
-  free(samples);
-  free(height);
-}
 
 /* Two circles that cross twice, around one spot. */
 static void add_spot(drawing* d, vec3 centre, vec3 other, double radius)
@@ -84,10 +18,13 @@ typedef struct outcome
 {
   size_t first, total; /* arcs drawn in the first round, and in all */
   long euler;          /* nodes - edges + loops */
-  bool is_bare;        /* no line was left */
+  bool is_bare;        /* some component has no line left */
+  size_t bare_faces;
+  uint64_t bare_hash;
 } outcome;
 
-static outcome cut(drawing* d)
+/* In rounds, until no region needs an arc; `all`: each looks at all faces again. */
+static outcome cut_looking_at(drawing* d, bool all)
 {
   aqr_context* c = &d->e.c;
   const aqr_surface* s = &d->e.s;
@@ -99,6 +36,8 @@ static outcome cut(drawing* d)
     aqr_network net = { 0 };
     size_t added = 0;
     CHECK(aqr_network_build(c, s, &d->lines, &d->chains, 0.01, 0.01, &net) == AQR_OK);
+    if (all)
+      memset(suspect, 1, s->n_faces);
     CHECK(aqr_regions_cut(c, s, &d->chains, &net, &d->lines, bare, suspect, true, &added) == AQR_OK);
     r.euler = (long)net.n_stops + (long)net.n_loops - (long)net.n_edges;
     for (size_t k = 0; k < net.n_crossings; k++)
@@ -113,11 +52,19 @@ static outcome cut(drawing* d)
   for (size_t k = 0; k < d->lines.n_lines; k++)
     for (size_t i = d->lines.lines[k].first; i + 1 < d->lines.lines[k].first + d->lines.lines[k].count; i++)
       CHECK(d->lines.samples[i].edge != d->lines.samples[i + 1].edge);
-  r.is_bare = memchr(bare, 1, s->n_faces);
+  for (size_t f = 0; f < s->n_faces; f++)
+    r.bare_faces += bare[f];
+  r.is_bare = r.bare_faces > 0;
+  r.bare_hash = hash_bytes(0, bare, s->n_faces);
   free(bare);
   free(suspect);
   printf("arcs %zu, %zu in the first round; Euler number %ld\n", r.total, r.first, r.euler);
   return r;
+}
+
+static outcome cut(drawing* d)
+{
+  return cut_looking_at(d, false);
 }
 
 /* Two circles on a sphere: four disks. */
@@ -252,6 +199,79 @@ AQR_TEST(few_lines_get_arcs_that_cross_faces)
       add_walk(&d, 10 + (size_t)i / 10, 1000, &state);
     outcome r = cut(&d);
     CHECK(r.is_bare || r.euler == (ring ? 0 : 2));
+    drawing_free(&d);
+  }
+}
+
+static bool same_lines(const drawing* a, const drawing* b)
+{
+  bool same = a->lines.n_lines == b->lines.n_lines && a->lines.n_samples == b->lines.n_samples;
+  for (size_t i = 0; same && i < a->lines.n_samples; i++)
+  {
+    const aqr_sample *x = &a->lines.samples[i], *y = &b->lines.samples[i];
+    same = x->edge == y->edge && x->face == y->face && !(x->t < y->t) && !(x->t > y->t);
+  }
+  return same;
+}
+
+/* The rounds after the first look only at faces of regions that were cut: a region counted in part, or one left out,
+ * would get other arcs, or none. */
+AQR_TEST(rounds_that_look_at_few_faces_draw_the_arcs_of_those_that_look_at_all)
+{
+  unsigned state[2] = { 9, 9 };
+  size_t later = 0;
+  for (int i = 0; i < 100; i++)
+  {
+    drawing d[2];
+    outcome r[2];
+    for (int all = 0; all < 2; all++)
+    {
+      d[all] = draw_on(shape_plate(3, 3, 2, 1));
+      for (int k = 0; k < 2 + i % 4; k++)
+        add_walk(&d[all], 10 + (size_t)i, 1000, &state[all]);
+      r[all] = cut_looking_at(&d[all], all);
+    }
+    CHECK(same_lines(&d[0], &d[1]) && r[0].euler == r[1].euler);
+    CHECK(r[0].bare_faces == r[1].bare_faces && r[0].bare_hash == r[1].bare_hash);
+    CHECK(r[0].is_bare || r[0].euler == -4);
+    later += r[0].total > r[0].first;
+    for (int all = 0; all < 2; all++)
+      drawing_free(&d[all]);
+  }
+  CHECK(later > 20); /* or nothing was compared */
+}
+
+/* Two surfaces in one. */
+static shape beside(shape a, shape b, vec3 off)
+{
+  shape m = { .n_points = a.n_points + b.n_points, .n_triangles = a.n_triangles + b.n_triangles };
+  m.points = malloc(3 * m.n_points * sizeof *m.points);
+  m.triangles = malloc(3 * m.n_triangles * sizeof *m.triangles);
+  for (size_t i = 0; i < m.n_points; i++)
+    v3_store(m.points + 3 * i,
+      i < a.n_points ? v3_load(a.points + 3 * i) : v3_add(off, v3_load(b.points + 3 * (i - a.n_points))));
+  for (size_t i = 0; i < 3 * m.n_triangles; i++)
+    m.triangles[i] = i < 3 * a.n_triangles ? a.triangles[i] : b.triangles[i - 3 * a.n_triangles] + (int64_t)a.n_points;
+  shape_free(&a);
+  shape_free(&b);
+  return m;
+}
+
+/* A component without lines gets its own triangles for a mesh: it must be found, whole, and no other. Lines without a
+ * crossing leave no network, so they do not save it, and no arc can reach it. */
+AQR_TEST(only_a_component_without_a_network_is_bare)
+{
+  for (int circles = 0; circles < 3; circles++)
+  {
+    drawing d = draw_on(beside(shape_sphere(6, 1), shape_torus(6, 2), v3(0, 0, 3)));
+    const size_t ring = 2 * 30 * 12;
+    add_spot(&d, v3(0, 0, 1), v3(0.3, 0, 1), 0.5);
+    for (int k = 0; k < circles; k++)
+      add_circle(&d, v3(1.4, 0.2 * k, 3), 0.3);
+    outcome r = cut(&d);
+    CHECK(r.bare_faces == (circles < 2 ? ring : 0));
+    CHECK(r.total == (circles < 2 ? 0 : 2)); /* the torus' handle */
+    CHECK(r.euler == 2);                     /* of the sphere; a torus has none */
     drawing_free(&d);
   }
 }
