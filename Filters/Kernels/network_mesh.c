@@ -107,7 +107,8 @@ aqr_status aqr_network_mesh(aqr_context* c, const aqr_surface* s, const aqr_fiel
   }
   mesh->n_faces = net->n_loops;
   mesh->n_half_edges = 2 * net->n_edges;
-  memcpy(mesh->edge_type, net->type, net->n_edges);
+  if (net->type) /* NULL where the network has no edge */
+    memcpy(mesh->edge_type, net->type, net->n_edges);
   for (size_t h = 0; h < mesh->n_half_edges; h++)
   {
     aqr_half_edge* e = &mesh->half_edges[h];
