@@ -28,7 +28,7 @@ static outcome cut_looking_at(drawing* d, bool all)
 {
   aqr_context* c = &d->e.c;
   const aqr_surface* s = &d->e.s;
-  outcome r = { 0, 0, 0, false };
+  outcome r = { .first = 0 };
   uint8_t *bare = calloc(s->n_faces, 1), *suspect = malloc(s->n_faces);
   memset(suspect, 1, s->n_faces);
   for (int i = 0; i < 30; i++)
