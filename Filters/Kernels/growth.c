@@ -16,6 +16,8 @@ static const double stop_distance = 0.3; /* of the spacing: nearer than this to 
 static const double longest_line = 20;   /* diagonals */
 static const double longest_step = 0.5;  /* of the smaller spacing */
 static const double shortest_step = 0.1;
+static const double most_stop_distance =
+  0.75; /* ... of a line that comes from where more points are asked for: it does not go on between lines there */
 static const double query_every = 0.6; /* of the stop distance; farther apart along stretched cells */
 static const double loop_start = 3;    /* stop distances from the seed: a line that comes back to there closes */
 
@@ -152,7 +154,7 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
 {
   aqr_tracer* t = &g->tracer;
   const aqr_surface* s = g->surface;
-  double step = 0, queried = 0, arc = 0;
+  double step = 0, queried = 0, arc = 0, densest = INFINITY;
   size_t entered = 0;
   const vec3 seed = aqr_tracer_position(t);
   vec3 seen = seed;
@@ -166,7 +168,10 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
       AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
     double along, across;
     aqr_sizing_at(s, g->field, g->sizing, t->chart.face, aqr_tracer_direction(t), &along, &across);
-    double least = fmin(along, across), stop = stop_distance * across;
+    double scale = aqr_sizing_scale(s, g->sizing, t->chart.face);
+    densest = fmin(densest, scale);
+    double least = fmin(along, across);
+    double stop = fmin(most_stop_distance, stop_distance * scale / densest) * across;
     if (step == 0)
       step = longest_step * least;
     if (i % in_place == 0)

@@ -181,6 +181,14 @@ void aqr_sizing_at(const aqr_surface* s, const aqr_field* field, const aqr_sizin
   *across = a[1] / 3;
 }
 
+double aqr_sizing_scale(const aqr_surface* s, const aqr_sizing* sizing, aqr_index face)
+{
+  double scale = 0;
+  for (unsigned i = 0; sizing->scale && i < 3; i++)
+    scale += (double)sizing->scale[s->corner[3 * face + i]] / 3;
+  return sizing->scale ? scale : 1;
+}
+
 aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_field* field, const double* density,
   double largest_spacing, double largest_bend, aqr_sizing* sizing)
 {

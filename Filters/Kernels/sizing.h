@@ -39,4 +39,7 @@ aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points,
 void aqr_sizing_at(const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing, aqr_index face, vec3 d,
   double* along, double* across);
 
+/* The part of both that the user's density has: a factor, 1 where there is none. */
+double aqr_sizing_scale(const aqr_surface* s, const aqr_sizing* sizing, aqr_index face);
+
 #endif
