@@ -21,7 +21,13 @@ static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
   double d1 = v3_dot(ab, ap), d2 = v3_dot(ac, ap), d3 = v3_dot(ab, bp), d4 = v3_dot(ac, bp);
   double d5 = v3_dot(ab, cp), d6 = v3_dot(ac, cp), v, w;
   double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-  if (d1 <= 0 && d2 <= 0)
+  if (va > 0 && vb > 0 && vc > 0) /* inside, as mostly */
+  {
+    double sum = va + vb + vc;
+    v = share(vb, sum);
+    w = share(vc, sum);
+  }
+  else if (d1 <= 0 && d2 <= 0)
     v = w = 0;
   else if (d3 >= 0 && d4 <= d3)
   {
@@ -67,31 +73,31 @@ static aqr_index other_side(const aqr_surface* s, aqr_index h, bool over_seams)
   return over_seams ? aqr_any_twin(s, h) : aqr_twin(s, h);
 }
 
-static void keep_nearer(aqr_closest* best, aqr_closest x)
+static void keep_nearer(const aqr_surface* s, aqr_index f, vec3 p, aqr_closest* best)
 {
+  aqr_closest x = on_face(s, f, p);
   if (x.distance2 < best->distance2)
     *best = x;
 }
 
 /* The nearest of the faces around the start of h. */
-static aqr_closest around(const aqr_surface* s, aqr_index h, vec3 p, bool over_seams, aqr_closest best)
+static void around(const aqr_surface* s, aqr_index h, vec3 p, bool over_seams, aqr_closest* best)
 {
   aqr_index k = other_side(s, aqr_prev(h), over_seams);
   for (unsigned i = 0; i < most_around && k != AQR_NONE && k != h; i++)
   {
-    keep_nearer(&best, on_face(s, aqr_face_of(k), p));
+    keep_nearer(s, aqr_face_of(k), p, best);
     k = other_side(s, aqr_prev(k), over_seams);
   }
   if (k == h)
-    return best;
+    return;
   k = other_side(s, h, over_seams); /* met a border: the other way round */
   for (unsigned i = 0; i < most_around && k != AQR_NONE; i++)
   {
     k = aqr_next(k);
-    keep_nearer(&best, on_face(s, aqr_face_of(k), p));
+    keep_nearer(s, aqr_face_of(k), p, best);
     k = other_side(s, k, over_seams);
   }
-  return best;
 }
 
 aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams)
@@ -109,18 +115,18 @@ aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsi
       }
       else
         corner = i;
-    aqr_closest best = r;
+    if (zeros == 0)
+      break;
     if (zeros == 1)
     {
       aqr_index t = other_side(s, 3 * f + (opposite + 1) % 3, over_seams);
       if (t != AQR_NONE)
-        keep_nearer(&best, on_face(s, aqr_face_of(t), p));
+        keep_nearer(s, aqr_face_of(t), p, &r);
     }
-    else if (zeros > 1)
-      best = around(s, 3 * f + corner, p, over_seams, best);
-    if (best.place.face == f)
+    else
+      around(s, 3 * f + corner, p, over_seams, &r);
+    if (r.place.face == f)
       break;
-    r = best;
   }
   return r;
 }

@@ -49,9 +49,15 @@ typedef struct triangle
 {
   aqr_index v[3];
   sample at[samples];
-  float image[samples]; /* of the solver's direction */
-  float error;          /* squared distance, over the area */
+  float error; /* squared distance, over the area */
 } triangle;
+
+/* What a vertex has to do with a neighbour: a block of the matrix, xx yy zz xy xz yz. */
+typedef struct link
+{
+  aqr_index to; /* AQR_NONE: no further neighbours */
+  float block[6];
+} link;
 
 typedef struct fit
 {
@@ -63,10 +69,12 @@ typedef struct fit
   triangle* triangles;
   size_t* first_corner; /* per vertex, into `corners`; n_vertices + 2 */
   aqr_index* corners;   /* 3 * triangle + corner */
+  link* links;          /* per vertex: one more than its corners, as a fan has at most so many neighbours */
   vec3 *move, *residual, *direction, *image, *before;
   vec3* across;    /* per edge: along the surface and across the edge, scaled by the root of what holds it */
   double* trace;   /* per vertex: of its part of the error */
-  double* inverse; /* per vertex: of its own 3 x 3 block: xx yy zz xy xz yz; 0 where it stays */
+  double* block;   /* per vertex: its own block of the matrix, as in link */
+  double* inverse; /* of it; 0 where the vertex stays */
   double* error;   /* per vertex: of its triangles, before the last move */
   uint8_t* back;   /* per vertex: the last move was damped or taken back */
   uint8_t* folds;  /* per half-edge: the corner where it begins would fold */
@@ -109,6 +117,7 @@ static aqr_status allocate(aqr_context* c, fit* f)
   f->triangles = AQR_NEW(c, triangle, f->n_triangles);
   f->first_corner = AQR_NEW(c, size_t, n + 2);
   f->corners = AQR_NEW(c, aqr_index, 3 * f->n_triangles);
+  f->links = AQR_NEW(c, link, 3 * f->n_triangles + n);
   f->move = AQR_NEW(c, vec3, n);
   f->residual = AQR_NEW(c, vec3, n);
   f->direction = AQR_NEW(c, vec3, n);
@@ -116,12 +125,13 @@ static aqr_status allocate(aqr_context* c, fit* f)
   f->before = AQR_NEW(c, vec3, n);
   f->across = AQR_NEW(c, vec3, m->n_half_edges / 2);
   f->trace = AQR_NEW(c, double, n);
+  f->block = AQR_NEW(c, double, 6 * n);
   f->inverse = AQR_NEW(c, double, 6 * n);
   f->error = AQR_NEW(c, double, n);
   f->back = AQR_NEW0(c, uint8_t, n);
   f->folds = AQR_NEW(c, uint8_t, m->n_half_edges);
-  return f->triangles && f->first_corner && f->corners && f->move && f->residual && f->direction && f->image &&
-             f->before && f->across && f->trace && f->inverse && f->error && f->back && f->folds
+  return f->triangles && f->first_corner && f->corners && f->links && f->move && f->residual && f->direction &&
+             f->image && f->before && f->across && f->trace && f->block && f->inverse && f->error && f->back && f->folds
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
 }
@@ -133,6 +143,7 @@ static void release(aqr_context* c, fit* f)
   AQR_DROP(c, f->triangles, f->n_triangles);
   AQR_DROP(c, f->first_corner, n + 2);
   AQR_DROP(c, f->corners, 3 * f->n_triangles);
+  AQR_DROP(c, f->links, 3 * f->n_triangles + n);
   AQR_DROP(c, f->move, n);
   AQR_DROP(c, f->residual, n);
   AQR_DROP(c, f->direction, n);
@@ -140,6 +151,7 @@ static void release(aqr_context* c, fit* f)
   AQR_DROP(c, f->before, n);
   AQR_DROP(c, f->across, f->m->n_half_edges / 2);
   AQR_DROP(c, f->trace, n);
+  AQR_DROP(c, f->block, 6 * n);
   AQR_DROP(c, f->inverse, 6 * n);
   AQR_DROP(c, f->error, n);
   AQR_DROP(c, f->back, n);
@@ -239,7 +251,7 @@ static void measure(void* data, size_t begin, size_t end)
   }
 }
 
-static vec3 times_inverse(const double* a, vec3 b)
+static vec3 times(const double* a, vec3 b)
 {
   return v3(
     a[0] * b.x + a[3] * b.y + a[4] * b.z, a[3] * b.x + a[1] * b.y + a[5] * b.z, a[4] * b.x + a[5] * b.y + a[2] * b.z);
@@ -265,23 +277,62 @@ static vec3 held(const fit* f, const aqr_vertex* v, double trace, vec3 x)
   return v3_scale(v3_madd(v3_scale(x, f->hold), (hold_normal - f->hold) * along, v->normal), trace);
 }
 
-/* The part of the error that each vertex stands for. */
-static void weigh(void* data, size_t begin, size_t end)
+static link* links_of(const fit* f, size_t v)
+{
+  return f->links + f->first_corner[v] + v;
+}
+
+/* Adds a block to that of a neighbour, which is new where no link leads to it yet. */
+static void add_block(link* links, size_t* n, aqr_index to, const float* block)
+{
+  size_t i = 0;
+  while (i < *n && links[i].to != to)
+    i++;
+  if (i == *n)
+    links[(*n)++] = (link){ to, { 0 } };
+  for (unsigned k = 0; k < 6; k++)
+    links[i].block[k] += block[k];
+}
+
+/* What the distances say of each vertex: the right-hand side, its own block, and those of its neighbours. */
+static void gather(void* data, size_t begin, size_t end)
 {
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
-    f->trace[v] = 0;
+    link* links = links_of(f, v);
+    double* a = f->block + 6 * v;
+    vec3 right = v3(0, 0, 0);
+    size_t n = 0;
+    memset(a, 0, 6 * sizeof *a);
     for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
     {
       const triangle* t = &f->triangles[f->corners[i] / 3];
-      for (unsigned k = 0; k < samples; k++)
+      unsigned k = f->corners[i] % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      float own[6] = { 0 }, one[6] = { 0 }, two[6] = { 0 };
+      for (unsigned j = 0; j < samples; j++)
       {
-        double w = barycentric[k][f->corners[i] % 3];
-        vec3 n = v3((double)t->at[k].normal[0], (double)t->at[k].normal[1], (double)t->at[k].normal[2]);
-        f->trace[v] += w * w * v3_norm2(n);
+        const float* x = t->at[j].normal;
+        const float product[6] = { x[0] * x[0], x[1] * x[1], x[2] * x[2], x[0] * x[1], x[0] * x[2], x[1] * x[2] };
+        const float w = (float)barycentric[j][k], w1 = (float)barycentric[j][k1], w2 = (float)barycentric[j][k2];
+        for (unsigned d = 0; d < 6; d++)
+        {
+          own[d] += w * w * product[d];
+          one[d] += w * w1 * product[d];
+          two[d] += w * w2 * product[d];
+        }
+        right =
+          v3_madd(right, barycentric[j][k] * (double)t->at[j].distance, v3((double)x[0], (double)x[1], (double)x[2]));
       }
+      for (unsigned d = 0; d < 6; d++)
+        a[d] += (double)own[d];
+      add_block(links, &n, t->v[k1], one);
+      add_block(links, &n, t->v[k2], two);
     }
+    if (n <= f->first_corner[v + 1] - f->first_corner[v])
+      links[n].to = AQR_NONE;
+    f->trace[v] = a[0] + a[1] + a[2]; /* the part of the error that it stands for */
+    f->residual[v] = right;
   }
 }
 
@@ -300,71 +351,38 @@ static void hold_edges(void* data, size_t begin, size_t end)
   }
 }
 
-/* Sets up each vertex' own block and the right-hand side. Fixed vertices have none. */
+/* Adds what holds the vertices, and sets the solver up. Fixed vertices have no equations. */
 static void begin_rows(void* data, size_t begin, size_t end)
 {
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
     const aqr_vertex* x = &f->m->vertices[v];
-    double a[6] = { 0 };
-    vec3 right = v3(0, 0, 0);
-    for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1] && x->kind == AQR_VERTEX_INTERIOR; i++)
-    {
-      const triangle* t = &f->triangles[f->corners[i] / 3];
-      for (unsigned k = 0; k < samples; k++)
-      {
-        double w = barycentric[k][f->corners[i] % 3];
-        vec3 n = v3(w * (double)t->at[k].normal[0], w * (double)t->at[k].normal[1], w * (double)t->at[k].normal[2]);
-        a[0] += n.x * n.x;
-        a[1] += n.y * n.y;
-        a[2] += n.z * n.z;
-        a[3] += n.x * n.y;
-        a[4] += n.x * n.z;
-        a[5] += n.y * n.z;
-        right = v3_madd(right, (double)t->at[k].distance, n);
-      }
-    }
+    double *a = f->block + 6 * v, *inverse = f->inverse + 6 * v, trace = f->trace[v];
     aqr_index h = x->out;
     do
     {
       vec3 n = f->across[h >> 1];
-      a[0] += n.x * n.x;
-      a[1] += n.y * n.y;
-      a[2] += n.z * n.z;
-      a[3] += n.x * n.y;
-      a[4] += n.x * n.z;
-      a[5] += n.y * n.z;
+      const double product[6] = { n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z };
+      link* to = links_of(f, v);
+      while (to->to != aqr_pm_to(f->m, h)) /* every edge is one of triangles */
+        to++;
+      for (unsigned d = 0; d < 6; d++)
+      {
+        a[d] += product[d];
+        to->block[d] -= (float)product[d];
+      }
       h = aqr_pm_next_around(f->m, h);
     } while (h != x->out);
-    double trace = f->trace[v];
     vec3 e[3] = { held(f, x, trace, v3(1, 0, 0)), held(f, x, trace, v3(0, 1, 0)), held(f, x, trace, v3(0, 0, 1)) };
-    const double sum[6] = { a[0] + e[0].x, a[1] + e[1].y, a[2] + e[2].z, a[3] + e[0].y, a[4] + e[0].z, a[5] + e[1].z };
-    double* inverse = f->inverse + 6 * v;
-    if (x->kind != AQR_VERTEX_INTERIOR || !invert(sum, inverse))
+    const double hold[6] = { e[0].x, e[1].y, e[2].z, e[0].y, e[0].z, e[1].z };
+    for (unsigned d = 0; d < 6; d++)
+      a[d] += hold[d];
+    if (x->kind != AQR_VERTEX_INTERIOR || !invert(a, inverse))
       memset(inverse, 0, 6 * sizeof *inverse);
-    f->residual[v] = right;
-    f->direction[v] = times_inverse(inverse, right);
+    f->direction[v] = times(inverse, f->residual[v]);
     f->image[v] = v3(0, 0, 0);
     f->move[v] = v3(0, 0, 0);
-  }
-}
-
-/* What the direction does to the distances. */
-static void multiply_samples(void* data, size_t begin, size_t end)
-{
-  fit* f = data;
-  for (size_t i = begin; i < end; i++)
-  {
-    triangle* t = &f->triangles[i];
-    vec3 a = f->direction[t->v[0]], b = f->direction[t->v[1]], c = f->direction[t->v[2]];
-    for (unsigned k = 0; k < samples; k++)
-    {
-      const double* w = barycentric[k];
-      const float* n = t->at[k].normal;
-      vec3 d = v3_madd(v3_madd(v3_scale(a, w[0]), w[1], b), w[2], c);
-      t->image[k] = (float)((double)n[0] * d.x + (double)n[1] * d.y + (double)n[2] * d.z);
-    }
   }
 }
 
@@ -374,27 +392,18 @@ static void multiply(void* data, size_t begin, size_t end)
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
-    vec3 sum = v3(0, 0, 0);
     if (!(f->inverse[6 * v] > 0))
       continue;
-    for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
+    vec3 sum = times(f->block + 6 * v, f->direction[v]);
+    const link *last = links_of(f, v + 1), *to = links_of(f, v);
+    for (; to < last && to->to != AQR_NONE; to++)
     {
-      const triangle* t = &f->triangles[f->corners[i] / 3];
-      for (unsigned k = 0; k < samples; k++)
-      {
-        double w = barycentric[k][f->corners[i] % 3], b = w * (double)t->image[k];
-        vec3 n = v3((double)t->at[k].normal[0], (double)t->at[k].normal[1], (double)t->at[k].normal[2]);
-        sum = v3_madd(sum, b, n);
-      }
+      double a[6];
+      for (unsigned d = 0; d < 6; d++)
+        a[d] = (double)to->block[d];
+      sum = v3_add(sum, times(a, f->direction[to->to]));
     }
-    aqr_index h = f->m->vertices[v].out;
-    do
-    {
-      vec3 n = f->across[h >> 1], d = v3_sub(f->direction[v], f->direction[aqr_pm_to(f->m, h)]);
-      sum = v3_madd(sum, v3_dot(n, d), n);
-      h = aqr_pm_next_around(f->m, h);
-    } while (h != f->m->vertices[v].out);
-    f->image[v] = v3_add(sum, held(f, &f->m->vertices[v], f->trace[v], f->direction[v]));
+    f->image[v] = sum;
   }
 }
 
@@ -406,7 +415,7 @@ static aqr_status solve(aqr_context* c, fit* f, double at)
   aqr_status status = AQR_OK;
   size_t n = f->m->n_vertices;
   double rho = 0, first;
-  AQR_TRY(aqr_parallel(c, n, weigh, f, at, at));
+  AQR_TRY(aqr_parallel(c, n, gather, f, at, at));
   AQR_TRY(aqr_parallel(c, f->m->n_half_edges / 2, hold_edges, f, at, at));
   AQR_TRY(aqr_parallel(c, n, begin_rows, f, at, at));
   for (size_t v = 0; v < n; v++)
@@ -415,7 +424,6 @@ static aqr_status solve(aqr_context* c, fit* f, double at)
   for (unsigned step = 0; step < solver_steps && rho > least_residual * first; step++)
   {
     double energy = 0, next = 0;
-    AQR_TRY(aqr_parallel(c, f->n_triangles, multiply_samples, f, at, at));
     AQR_TRY(aqr_parallel(c, n, multiply, f, at, at));
     for (size_t v = 0; v < n; v++)
       energy += v3_dot(f->direction[v], f->image[v]);
@@ -425,14 +433,11 @@ static aqr_status solve(aqr_context* c, fit* f, double at)
     {
       f->move[v] = v3_madd(f->move[v], rho / energy, f->direction[v]);
       f->residual[v] = v3_madd(f->residual[v], -rho / energy, f->image[v]);
-      f->image[v] = times_inverse(f->inverse + 6 * v, f->residual[v]);
+      f->image[v] = times(f->inverse + 6 * v, f->residual[v]);
       next += v3_dot(f->residual[v], f->image[v]);
     }
     for (size_t v = 0; v < n; v++)
-    {
       f->direction[v] = v3_madd(f->image[v], next / rho, f->direction[v]);
-      f->image[v] = v3(0, 0, 0);
-    }
     rho = next;
   }
 done:
@@ -574,8 +579,8 @@ static void note_error(void* data, size_t begin, size_t end)
     f->error[v] = error_around(f, v);
 }
 
-/* Measures the error after a move, and again where the move had to be taken back. */
-static aqr_status judge(aqr_context* c, fit* f, double from, double to)
+/* Measures the error after a move, and, where another round reads it, again where the move had to be taken back. */
+static aqr_status judge(aqr_context* c, fit* f, bool last, double from, double to)
 {
   aqr_status status = AQR_OK;
   f->partly = false;
@@ -584,7 +589,8 @@ static aqr_status judge(aqr_context* c, fit* f, double from, double to)
   list_corners(f);
   AQR_TRY(aqr_parallel(c, f->m->n_vertices, take_back, f, to, to));
   f->partly = true;
-  AQR_TRY(aqr_parallel(c, f->n_triangles, measure, f, to, to));
+  if (!last)
+    AQR_TRY(aqr_parallel(c, f->n_triangles, measure, f, to, to));
   f->partly = false;
 done:
   return status;
@@ -611,7 +617,7 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
     AQR_TRY(aqr_parallel(c, n, limit, &f, at, at));
     AQR_TRY(damp(c, &f, at));
     AQR_TRY(aqr_parallel(c, n, apply, &f, at, at));
-    AQR_TRY(judge(c, &f, at, next));
+    AQR_TRY(judge(c, &f, round + 1 == rounds, at, next));
   }
   AQR_TRY(aqr_parallel(c, n, settle, &f, 0.9, 1));
 done:
