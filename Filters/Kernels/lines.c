@@ -53,6 +53,15 @@ static void enter(aqr_lines* l, aqr_index face, aqr_index sample, aqr_index line
   l->head[face] = (aqr_index)l->n_segments++;
 }
 
+/* A line and its continuation over a seam meet it at one place: what else meets it there lies to the same side of both.
+ */
+static void share_place(aqr_lines* l, size_t sample, aqr_index partner)
+{
+  l->samples[sample].p = l->samples[partner].p;
+  l->samples[sample].t = l->samples[partner].t;
+  l->samples[sample].key = l->samples[partner].key;
+}
+
 aqr_status aqr_lines_add(
   aqr_context* c, aqr_lines* l, const aqr_surface* s, const aqr_line* line, const aqr_sample* samples)
 {
@@ -71,6 +80,9 @@ aqr_status aqr_lines_add(
     l->samples[l->n_samples + i].key = (aqr_index)(l->n_samples + i);
   if (line->closed) /* the closing sample is the first one again */
     l->samples[l->n_samples + n - 1].key = (aqr_index)l->n_samples;
+  for (unsigned k = 0; k < 2; k++)
+    if (line->partner[k] != AQR_NONE)
+      share_place(l, l->n_samples + (k ? n - 1 : 0), line->partner[k]);
   for (size_t i = 0; i + 1 < n; i++)
   {
     aqr_index k = (aqr_index)(l->n_samples + i);

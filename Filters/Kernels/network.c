@@ -307,17 +307,18 @@ static bool line_lives(const builder* b, aqr_index line)
 
 /* ---- stops on chains ---- */
 
+/* A stop at the start of a sample is before all others of it. */
 static aqr_status add_stop(builder* b, aqr_index chain, aqr_index sample, double t, aqr_index* id)
 {
   if (!AQR_RESERVE(b->c, b->net->stops, b->net->stop_capacity, b->net->n_stops + 1))
     return AQR_OUT_OF_MEMORY;
   *id = (aqr_index)b->net->n_stops++;
-  b->net->stops[*id] = (aqr_stop){ chain, sample, t, AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
+  b->net->stops[*id] = (aqr_stop){ chain, sample, t, -INFINITY, 0, AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
   return AQR_OK;
 }
 
-/* The chain segment a line ends on, as the chain's sample and a position in its direction. */
-static bool landing_on(const builder* b, const aqr_sample* a, aqr_index* chain, aqr_index* sample, double* t)
+/* Where on a chain a line ends. */
+static bool landing_on(const builder* b, const aqr_sample* a, aqr_stop* stop)
 {
   const aqr_lines* l = b->l;
   aqr_index other = aqr_any_twin(b->s, a->edge);
@@ -326,9 +327,9 @@ static bool landing_on(const builder* b, const aqr_sample* a, aqr_index* chain, 
     aqr_index e = l->samples[l->segments[k].sample].edge;
     if (!l->lines[l->segments[k].line].is_chain || (e != a->edge && e != other))
       continue;
-    *chain = l->segments[k].line;
-    *sample = l->segments[k].sample;
-    *t = e == a->edge ? a->t : 1 - a->t;
+    bool forward = e == a->edge;
+    *stop = (aqr_stop){ l->segments[k].line, l->segments[k].sample, forward ? a->t : 1 - a->t, forward ? a->t : -a->t,
+      forward ? (int64_t)a->key : -(int64_t)a->key, AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
     return true;
   }
   return false;
@@ -345,8 +346,8 @@ static aqr_status stop_at_landings(builder* b)
       continue;
     for (unsigned k = 0; k < 2; k++)
     {
-      aqr_index sample = (aqr_index)(line->first + (k ? line->count - 1 : 0)), chain, at, id;
-      double t;
+      aqr_index sample = (aqr_index)(line->first + (k ? line->count - 1 : 0)), id;
+      aqr_stop stop;
       if (!ends_on_chain(line, k))
         continue;
       if (line->partner[k] != AQR_NONE && b->stop_of[line->partner[k]] != AQR_NONE)
@@ -354,11 +355,12 @@ static aqr_status stop_at_landings(builder* b)
         b->stop_of[sample] = b->stop_of[line->partner[k]];
         continue;
       }
-      if (!landing_on(b, &l->samples[sample], &chain, &at, &t))
+      if (!landing_on(b, &l->samples[sample], &stop))
         return AQR_INTERNAL;
-      aqr_status status = add_stop(b, chain, at, t, &id);
+      aqr_status status = add_stop(b, stop.chain, stop.sample, stop.t, &id);
       if (status != AQR_OK)
         return status;
+      b->net->stops[id] = stop;
       b->stop_of[sample] = id;
     }
   }
@@ -372,7 +374,9 @@ static int by_position(const void* a, const void* b)
     return x->chain < y->chain ? -1 : 1;
   if (x->sample != y->sample)
     return x->sample < y->sample ? -1 : 1;
-  return (x->t > y->t) - (x->t < y->t);
+  if (x->along < y->along || x->along > y->along)
+    return x->along < y->along ? -1 : 1;
+  return (x->key > y->key) - (x->key < y->key);
 }
 
 static vec3 stop_position(const builder* b, const aqr_stop* x)

@@ -26,7 +26,9 @@ typedef struct aqr_stop
   aqr_index chain;  /* line, or AQR_NONE for a node of the feature graph */
   aqr_index sample; /* of the chain; for a node of the feature graph the cleaned point */
   double t;
-  aqr_index out, in;     /* edges along the chain after and before; AQR_NONE where there are none */
+  double along;      /* orders the stops of one sample as aqr_border_before() does the lines' ends, which t may not */
+  int64_t key;       /* the same where they lie at one place */
+  aqr_index out, in; /* edges along the chain after and before; AQR_NONE where there are none */
   aqr_index left, right; /* outgoing half-edges of lines that end here, on either side of the chain */
 } aqr_stop;
 

@@ -111,4 +111,15 @@ AQR_TEST(a_component_too_small_for_its_products_stays_finite)
   shape_free(&m);
 }
 
+/* Lines that end at one place of a crease stood along it in another order than around the face they came over: their
+ * edges left their crossing in the wrong order, and three regions became one face. */
+AQR_TEST(lines_that_end_at_one_place_of_a_crease_keep_their_order)
+{
+  const double points[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0.46, 0, 0, 0.6, 0, 0, 3, 0, 0, 4, 0, 0, 3, 0.4, 0 };
+  const int64_t triangles[] = { 4, 1, 2, 0, 1, 3, 1, 4, 3, 0, 1, 2, 5, 6, 7 };
+  aqr_input input = { 8, NULL, points, 5, triangles };
+  aqr_options o = aqr_default_options();
+  CHECK(!fault_of(&input, &o));
+}
+
 AQR_TEST_MAIN

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "test.h"
 
-#include "lines.h"
-#include "model.h"
+#include "drawing.h"
 #include "solids.h"
 
 static aqr_sample end_on(const model* e, aqr_index h, double t, aqr_index key)
@@ -70,6 +69,33 @@ AQR_TEST(lines_through_one_point_of_an_edge_cross_once_and_not_twice)
     CHECK((in != 0) + (out != 0) == 1);
   }
   model_free(&e);
+}
+
+/* The first of two lines to be added was taken for the nearer to the edge's start on its own side of a crease only. */
+AQR_TEST(lines_that_meet_an_edge_at_one_place_keep_their_order_on_its_other_side)
+{
+  drawing d = draw_on(shape_sphere(4, 3));
+  const aqr_surface* s = &d.e.s;
+  for (aqr_index h = 0; h < 60; h++)
+  {
+    aqr_index side[2] = { h, aqr_twin(s, h) }, first = (aqr_index)d.lines.n_samples;
+    double t = 0.3;
+    for (unsigned k = 0; k < 2; k++)
+      for (unsigned i = 0; i < 2; i++)
+      {
+        aqr_index f = aqr_face_of(side[k]), partner = k ? first + (i ? 0 : 2) : AQR_NONE;
+        aqr_sample a[2] = { place_on(&d, side[k], k ? 1 - t : t, f), place_on(&d, aqr_next(side[k]), 0.5, f) };
+        aqr_line line = {
+          .count = 2, .ends = { AQR_END_FEATURE, AQR_END_PROXIMITY }, .partner = { partner, AQR_NONE }
+        };
+        CHECK(aqr_lines_add(&d.e.c, &d.lines, s, &line, a) == AQR_OK);
+      }
+    const aqr_sample* a = d.lines.samples + first;
+    bool here = aqr_border_before(s, aqr_face_of(side[0]), &a[0], &a[2]);
+    bool there = aqr_border_before(s, aqr_face_of(side[1]), &a[6], &a[4]); /* the continuations of the two */
+    CHECK(here != there);
+  }
+  drawing_free(&d);
 }
 
 AQR_TEST_MAIN
