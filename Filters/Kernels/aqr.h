@@ -115,8 +115,9 @@ extern "C"
     aqr_density density;         /**< AQR_DENSITY_TOLERANCE */
     double tolerance;            /**< [1e-7, 0.1], 0.0005 */
     int64_t target_points;       /**< [4, 2^31), 5000; met within 5 % where the input can carry it */
-    const double* density_scale; /**< NULL, or one factor per input point, > 0: points per area are
-                                    multiplied by it */
+    const double* density_scale; /**< NULL, or one factor per input point, > 0: points per area are multiplied by it,
+                                    by no more than 1e6 and no less than 1e-6; where target_points are asked
+                                    for, only what one place has against another counts */
     double curvature_radius;     /**< [0, 0.2], 0.01: averaging ball of the curvature tensors (paper 2) */
     int smoothing_iterations;    /**< [0, 1000], 5: confidence-weighted smoothing of the tensors
                                     (paper 4.1) */
@@ -127,12 +128,8 @@ extern "C"
     int boundary_lines;          /**< 0 or 1, 1: boundary loops become lines; 0 lets the border be cut
                                     coarsely */
     double largest_spacing;      /**< [1e-4, 1], 0.05: no two neighbouring lines are meant to be farther
-                                    apart (3.2) */
-    double anisotropy;           /**< [0, 1], 1: how far faces are stretched where curvatures differ; 0: squares,
-                                    as fine as the larger curvature asks for */
-    double adaptivity;           /**< [0, 1], 1: how far density follows curvature; 0: everywhere as for the mean */
-    int pure_quads;              /**< 0 or 1, 0: 1: lines twice as far apart, then every face cut into quads by its
-                                    centre and the middles of its edges */
+                                    apart (3.2). Neither it nor another option brings them nearer than a
+                                    quarter of the root of the area that a point of the cleaned input has */
     int largest_valence;         /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
     int convex_partition;        /**< 0 or 1, 1: concave faces are split (paper 5.2) */
     int preserve_topology;       /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may

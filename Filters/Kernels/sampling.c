@@ -16,6 +16,7 @@ enum
   most_seeds_per_line = 1 << 20,
   score_levels = 64,
   most_passes = 12,   /* at reaching the number of points asked for */
+  most_on_edge = 8,   /* spacings along an edge of a chain, however small the tolerance */
   most_failures = 50, /* growths that come to nothing, per line kept ... */
   free_failures = 64  /* ... and these many lines more: the bound of the work along threads without area */
 };
@@ -124,7 +125,7 @@ static aqr_status add_chain(sampler* m, const aqr_chains* chains, const aqr_chai
         along = fmin(along, 2 * sqrt(e * (2 / k - e)));
     }
     a[i].sigma = (float)sigma;
-    sigma += length / fmax(along, length * 1e-3);
+    sigma += length / fmax(along, length / most_on_edge);
   }
   a[n - 1].sigma = (float)sigma;
   aqr_line line = { .count = n,

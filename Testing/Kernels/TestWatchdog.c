@@ -4,10 +4,18 @@
 
 #include "mutate.h"
 
+static const double element_bytes = 64, most_work = 5e7;
+
 typedef struct counter
 {
   double elements, bytes;
 } counter;
+
+typedef struct cost
+{
+  double work;                /* 0 where nothing came out */
+  double points, mesh_points; /* of the cleaned surface, of the result */
+} cost;
 
 static void* count_bytes(void* user, void* old, size_t old_bytes, size_t bytes)
 {
@@ -27,13 +35,19 @@ static void count_elements(
   body(data, 0, count);
 }
 
-/* Elements of all loops that may be threaded, steps and queries of lines, and memory in units of an element's. 0 where
- * nothing came out. */
-static double work_on(const aqr_input* input, const aqr_options* o)
+/* Ends what would not end by itself. */
+static int allow(void* user, double fraction, const char* stage)
 {
-  const double element_bytes = 64;
+  (void)fraction, (void)stage;
+  const counter* n = user;
+  return n->elements + n->bytes / element_bytes < most_work;
+}
+
+/* Elements of all loops that may be threaded, steps and queries of lines, and memory in units of an element's. */
+static cost cost_of(const aqr_input* input, const aqr_options* o)
+{
   counter n = { 0, 0 };
-  aqr_hooks hooks = { &n, count_bytes, NULL, count_elements };
+  aqr_hooks hooks = { &n, count_bytes, allow, count_elements };
   aqr_remesher* r = NULL;
   aqr_status status = aqr_remesher_new(&hooks, &r);
   if (status == AQR_OK)
@@ -41,11 +55,22 @@ static double work_on(const aqr_input* input, const aqr_options* o)
   if (status == AQR_OK)
     status = aqr_remesher_run(r, o);
   CHECK(status == AQR_OK || status == AQR_DEGENERATE_INPUT);
-  double work = n.elements + n.bytes / element_bytes;
+  cost spent = { 0, 0, 0 };
   if (status == AQR_OK)
-    work += (double)aqr_remesher_report(r)->proximity_queries + (double)aqr_remesher_report(r)->line_samples;
+  {
+    const aqr_report* report = aqr_remesher_report(r);
+    spent.work =
+      n.elements + n.bytes / element_bytes + (double)report->proximity_queries + (double)report->line_samples;
+    spent.points = (double)aqr_remesher_field(r)->number_of_points;
+    spent.mesh_points = (double)aqr_remesher_mesh(r)->number_of_points;
+  }
   aqr_remesher_free(r);
-  return status == AQR_OK ? work : 0;
+  return spent;
+}
+
+static double work_on(const aqr_input* input, const aqr_options* o)
+{
+  return cost_of(input, o).work;
 }
 
 /* On the most costly of clean surfaces with at least as many triangles, and at least a few hundred. */
@@ -109,6 +134,90 @@ AQR_TEST(defects_never_cost_ten_times_the_work_on_a_clean_surface)
     shape_free(&m);
   }
   CHECK_BELOW(worst, 10);
+}
+
+/* One factor everywhere, the highest at one point among the lowest, or anything. */
+static void fill_factors(double* factor, size_t n, int kind)
+{
+  unsigned state = 1;
+  for (size_t i = 0; i < n; i++)
+    factor[i] = kind == 0   ? 1e-300
+                : kind == 1 ? 1e300
+                : kind == 2 ? (i ? 1e-300 : 1e300)
+                : kind == 3 ? (i ? 1e300 : 1e-300)
+                            : pow(10, 600 * (shape_random(&state) - 0.5));
+}
+
+/* The spacing went down to a ten-thousandth of the diagonal: a hundred million points from a small surface. */
+AQR_TEST(no_density_asks_for_more_than_the_input_can_carry)
+{
+  shape m = shape_grid(24, 3, false, false, 0.2, 1, place_on_saddle);
+  for (size_t i = 0; i < m.n_points; i++)
+    m.points[3 * i + 1] *= 0.1;
+  aqr_input input = shape_input(&m);
+  double* factor = malloc(m.n_points * sizeof *factor);
+  for (int k = 0; k < 8; k++)
+  {
+    aqr_options o = aqr_default_options();
+    o.tolerance = k == 5 ? 1e-7 : 0.005;
+    o.largest_spacing = k == 6 ? 1e-4 : o.largest_spacing;
+    o.target_points = INT32_MAX;
+    o.density = k == 7 ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE;
+    o.density_scale = k < 5 ? factor : NULL;
+    fill_factors(factor, m.n_points, k);
+    cost c = cost_of(&input, &o);
+    CHECK(c.work > 0);
+    CHECK_BELOW(c.mesh_points / c.points, 80);
+    CHECK_BELOW(c.work / c.points, 12000);
+  }
+  free(factor);
+  shape_free(&m);
+}
+
+/* Where a number of points is asked for, factors that are all small or all large had it missed, after all attempts. */
+AQR_TEST(a_number_of_points_costs_no_more_under_any_density)
+{
+  for (unsigned base = 2; base < 8; base += 4)
+  {
+    shape m = mutate_base(base);
+    aqr_input input = shape_input(&m);
+    double* factor = malloc(m.n_points * sizeof *factor);
+    aqr_options o = aqr_default_options();
+    o.density = AQR_DENSITY_POINTS;
+    o.target_points = 100;
+    double plain = work_on(&input, &o);
+    o.density_scale = factor;
+    for (int k = 0; k < 5; k++)
+    {
+      fill_factors(factor, m.n_points, k);
+      cost c = cost_of(&input, &o);
+      CHECK_BELOW(c.work / plain, 10);
+      if (k < 2)
+        CHECK_BELOW(fabs(c.mesh_points / 100 - 1), 0.051);
+    }
+    free(factor);
+    shape_free(&m);
+  }
+}
+
+/* No area foretells the points on the two borders of a ribbon: attempts at a target set tens of thousands of them. */
+AQR_TEST(ribbons_without_area_cost_no_more_than_wide_ones)
+{
+  aqr_options o = aqr_default_options();
+  o.density = AQR_DENSITY_POINTS;
+  o.target_points = 100;
+  double wide = 0;
+  for (double width = 1; width > 1e-10; width *= 1e-3)
+  {
+    shape m = shape_grid(19, 10, true, false, 0, 1, place_on_cylinder);
+    for (size_t i = 0; i < m.n_points; i++)
+      m.points[3 * i + 2] *= width;
+    aqr_input input = shape_input(&m);
+    double work = work_on(&input, &o);
+    wide = wide > 0 ? wide : work;
+    CHECK_BELOW(work / wide, 5);
+    shape_free(&m);
+  }
 }
 
 AQR_TEST_MAIN
