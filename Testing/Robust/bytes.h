@@ -54,7 +54,7 @@ static inline aqr_options take_mild_options(bytes* b)
   o.curvature_radius = flags & 32 ? 0 : 0.02;
   o.smoothing_iterations = flags & 64 ? 0 : 5;
   o.largest_spacing = flags & 128 ? 0.3 : 0.1;
-  o.tolerance = 0.001 + 0.0001 * fineness;
+  o.tolerance = 0.0265 - 0.0001 * fineness; /* zeros are coarse, and fast */
   o.target_points = 4 + 2 * fineness;
   o.feature_angle = angle ? angle * (180.0 / 255) : 40;
   o.largest_valence = 4 + rest % 8;

@@ -26,8 +26,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   if (take_8(&b) == 255)
     take(&b, &o.cookie, sizeof o.cookie);
   o.density = (aqr_density)(take_8(&b) % 2);
-  /* small values cost time, not paths: nine tenths of the range of the logarithm are left out */
-  o.tolerance = pow(10, take_value(&b, -3.5, -1));
+  /* small values cost time, not paths: nine tenths of the range of the logarithm are left out, and zeros are coarse */
+  o.tolerance = pow(10, take_value(&b, -1, -3.5));
   o.target_points = (int64_t)fmin(3000, fmax(-10, take_value(&b, 4, 2000)));
   o.curvature_radius = take_value(&b, 0, 0.2);
   o.smoothing_iterations = (int)fmin(60, fmax(-5, take_value(&b, 0, 20)));
@@ -35,10 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   o.feature_lines = take_8(&b) % 2;
   o.feature_angle = take_value(&b, 1, 180);
   o.boundary_lines = take_8(&b) % 2;
-  o.anisotropy = take_value(&b, 0, 1);
-  o.adaptivity = take_value(&b, 0, 1);
-  o.pure_quads = take_8(&b) % 2;
-  o.largest_spacing = fmax(0.005, take_value(&b, 0.01, 1));
+  o.largest_spacing = fmax(0.005, take_value(&b, 1, 0.01));
   o.largest_valence = (int)fmin(100, fmax(0, take_value(&b, 4, 64)));
   o.convex_partition = take_8(&b) % 2;
   o.preserve_topology = take_8(&b) % 2;
@@ -47,7 +44,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   if (scale && take_8(&b) % 4 == 0)
   {
     for (size_t i = 0; i < m.n_points; i++)
-      scale[i] = b.left ? pow(4, take_value(&b, -1, 1)) : 1;
+      scale[i] = b.left ? pow(o.density == AQR_DENSITY_POINTS ? 1e300 : 4, take_value(&b, -1, 1)) : 1;
     o.density_scale = scale;
   }
   aqr_input input = shape_input(&m);
