@@ -389,6 +389,9 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
   options.feature_angle = this->FeatureAngle;
   options.boundary_lines = this->BoundaryLines;
   options.largest_spacing = this->LargestSpacing;
+  options.anisotropy = this->Anisotropy;
+  options.adaptivity = this->Adaptivity;
+  options.pure_quads = this->PureQuads;
   options.largest_valence = this->LargestValence;
   options.convex_partition = this->ConvexPartition;
   options.preserve_topology = this->PreserveTopology;
@@ -634,6 +637,9 @@ void vtkAnisotropicQuadRemesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "BoundaryLines: " << onOff(this->BoundaryLines);
   os << indent << "LargestSpacing: " << this->LargestSpacing << "\n";
+  os << indent << "Anisotropy: " << this->Anisotropy << "\n";
+  os << indent << "Adaptivity: " << this->Adaptivity << "\n";
+  os << indent << "PureQuads: " << onOff(this->PureQuads);
   os << indent << "LargestValence: " << this->LargestValence << "\n";
   os << indent << "ConvexPartition: " << onOff(this->ConvexPartition);
   os << indent << "PreserveTopology: " << onOff(this->PreserveTopology);

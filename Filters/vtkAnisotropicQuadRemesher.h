@@ -206,6 +206,36 @@ public:
 
   ///@{
   /**
+   * How far faces are stretched where the two principal curvatures differ: 1 spaces the lines of each
+   * family by their own curvature, 0 gives squares, as fine as the larger curvature asks for. Range
+   * [0, 1], default 1.
+   */
+  vtkSetClampMacro(Anisotropy, double, 0.0, 1.0);
+  vtkGetMacro(Anisotropy, double);
+  ///@}
+
+  ///@{
+  /**
+   * How far the density follows the curvature: 1 in full, 0 gives the same number of points per area
+   * everywhere, that of the mean curvature. Range [0, 1], default 1.
+   */
+  vtkSetClampMacro(Adaptivity, double, 0.0, 1.0);
+  vtkGetMacro(Adaptivity, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the output has quads only: lines are traced twice as far apart, and every face between
+   * them is cut into quads by its centre and the middles of its edges. Four edges meet in more of the
+   * vertices; at the same number of points the surface is met less closely. Default: off.
+   */
+  vtkSetMacro(PureQuads, bool);
+  vtkGetMacro(PureQuads, bool);
+  vtkBooleanMacro(PureQuads, bool);
+  ///@}
+
+  ///@{
+  /**
    * Faces with more corners than this are split. Range [4, 64], default 5 (paper, section 5.2).
    */
   vtkSetClampMacro(LargestValence, int, 4, 64);
@@ -291,6 +321,9 @@ protected:
   double FeatureAngle = 40.0;
   bool BoundaryLines = true;
   double LargestSpacing = 0.05;
+  double Anisotropy = 1.0;
+  double Adaptivity = 1.0;
+  bool PureQuads = false;
   int LargestValence = 5;
   bool ConvexPartition = true;
   bool PreserveTopology = true;

@@ -130,6 +130,11 @@ extern "C"
     double largest_spacing;      /**< [1e-4, 1], 0.05: no two neighbouring lines are meant to be farther
                                     apart (3.2). Neither it nor another option brings them nearer than a
                                     quarter of the root of the area that a point of the cleaned input has */
+    double anisotropy;           /**< [0, 1], 1: how far faces are stretched where curvatures differ; 0: squares,
+                                    as fine as the larger curvature asks for */
+    double adaptivity;           /**< [0, 1], 1: how far density follows curvature; 0: everywhere as for the mean */
+    int pure_quads;              /**< 0 or 1, 0: 1: lines twice as far apart, then every face cut into quads by its
+                                    centre and the middles of its edges */
     int largest_valence;         /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
     int convex_partition;        /**< 0 or 1, 1: concave faces are split (paper 5.2) */
     int preserve_topology;       /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may

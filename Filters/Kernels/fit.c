@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "fit.h"
 
-#include "borders.h"
+#include "chain_places.h"
 #include "closest.h"
 
 #include <string.h>
@@ -601,7 +601,7 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
   aqr_status status = AQR_OK;
   fit f = { .s = s, .normals = normals, .m = m };
   size_t n = m->n_vertices;
-  AQR_TRY(aqr_place_on_borders(c, s, m));
+  AQR_TRY(aqr_place_on_chains(c, s, m));
   AQR_TRY(aqr_parallel(c, n, snap, &f, 0, 0.1));
   AQR_TRY(allocate(c, &f));
   AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, 0.1, 0.1));

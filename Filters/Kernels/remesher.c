@@ -7,18 +7,21 @@
 #include "pipeline.h"
 #include "regions.h"
 #include "sampling.h"
+#include "subdivide.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum
 {
-  cookie = 0x41515231,
+  cookie = 0x41515232,
   most_attempts = 9, /* at meeting a target number of points ... */
   fine_attempts = 4, /* ... of which the first ask for better than what counts as met */
   most_retries = 12, /* at a tolerance whose lines lost the topology */
   most_cuts = 24     /* rounds of arcs that keep the topology */
 };
+
+static const double quads_per_face = 4; /* of quads cut by their centres and the middles of their edges */
 
 static const double longest_edge = 0.025; /* edges longer than this are halved (paper 3.2): half the default spacing */
 static const double corner_angle = 45;    /* a chain turning more sharply has a corner there */
@@ -80,6 +83,8 @@ aqr_options aqr_default_options(void)
     .feature_angle = 40,
     .boundary_lines = 1,
     .largest_spacing = 0.05,
+    .anisotropy = 1,
+    .adaptivity = 1,
     .largest_valence = 5,
     .convex_partition = 1,
     .preserve_topology = 1 };
@@ -288,6 +293,7 @@ static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tole
   aqr_context* c = &r->context;
   aqr_network net = { 0 };
   aqr_status status = AQR_OK;
+  const double depart = o->pure_quads ? quads_per_face * tolerance : tolerance; /* of chords before they are halved */
   uint8_t* is_bare = AQR_NEW0(c, uint8_t, r->surface->n_faces);
   uint8_t* suspect = AQR_NEW(c, uint8_t, r->surface->n_faces);
   AQR_REQUIRE(is_bare && suspect, AQR_OUT_OF_MEMORY);
@@ -296,8 +302,8 @@ static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tole
   {
     size_t added = 0;
     aqr_network_free(c, &net);
-    AQR_TRY(aqr_network_build(
-      c, r->surface, &r->lines, &r->chains, tolerance, o->boundary_lines ? tolerance : 8 * tolerance, &net));
+    AQR_TRY(
+      aqr_network_build(c, r->surface, &r->lines, &r->chains, depart, o->boundary_lines ? depart : 8 * depart, &net));
     AQR_TRY(
       aqr_regions_cut(c, r->surface, &r->chains, &net, &r->lines, is_bare, suspect, o->preserve_topology, &added));
     r->report.topology_cuts += added;
@@ -355,6 +361,8 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
   began = begin_stage(r, AQR_STAGE_FACES);
   aqr_faces_options faces = { o->convex_partition != 0, o->largest_valence };
   status = aqr_faces_finish(c, &r->polygons, &faces);
+  if (status == AQR_OK && o->pure_quads)
+    status = aqr_subdivide(c, r->surface, &r->polygons);
   end_stage(r, AQR_STAGE_FACES, began);
   return status;
 }
@@ -396,7 +404,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
 {
   aqr_context* c = &r->context;
   aqr_status status = AQR_OK;
-  const double goal = (double)o->target_points;
+  const double per = o->pure_quads ? quads_per_face : 1, goal = (double)o->target_points / per;
   double ask = goal / largest_excess, points = goal, before[3] = { 0, 0, 0 };
   outcome best = { .report = r->report, .error = INFINITY };
   for (int i = 0; i < most_attempts; i++)
@@ -410,7 +418,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
     before[1] = r->sizing.stretch;
     before[2] = points;
     AQR_TRY(attempt(r, o, start, points, &reached));
-    double made = fmax(1, (double)count_vertices(&r->polygons)), error = fabs(log(made / goal));
+    double made = fmax(1, (double)count_vertices(&r->polygons)) / per, error = fabs(log(made / goal));
     if (o->preserve_topology && !keeps_topology(r))
       error += lost_topology;
     if (error < best.error)
@@ -460,6 +468,8 @@ static aqr_status check_options(aqr_remesher* r, const aqr_options* o)
     { "confidence_angle", o->confidence_angle, 0, 90 },
     { "feature_angle", o->feature_angle, 1e-6, 180 },
     { "largest_spacing", o->largest_spacing, 1e-4, 1 },
+    { "anisotropy", o->anisotropy, 0, 1 },
+    { "adaptivity", o->adaptivity, 0, 1 },
     { "largest_valence", o->largest_valence, 4, 64 },
   };
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
@@ -500,7 +510,8 @@ static int first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t d
     return AQR_STAGE_CURVATURE;
   if (o->smoothing_iterations != d->smoothing_iterations || differ(o->confidence_angle, d->confidence_angle))
     return AQR_STAGE_FIELD;
-  if (density != r->done_density || differ(o->largest_spacing, d->largest_spacing))
+  if (density != r->done_density || differ(o->largest_spacing, d->largest_spacing) ||
+      differ(o->anisotropy, d->anisotropy) || differ(o->adaptivity, d->adaptivity) || !o->pure_quads != !d->pure_quads)
     return AQR_STAGE_SIZING;
   return AQR_STAGE_LINES;
 }
@@ -536,8 +547,13 @@ static aqr_status run_field(aqr_remesher* r, const aqr_options* o)
 
 static aqr_status run_sizing(aqr_remesher* r, const aqr_options* o)
 {
-  return aqr_sizing_build(&r->context, r->surface, &r->field, o->density_scale, o->largest_spacing,
-    sharpest / fmax(o->curvature_radius, least_radius), &r->sizing);
+  const aqr_sizing_options sizing = { .density = o->density_scale,
+    .largest_spacing = o->largest_spacing,
+    .largest_bend = sharpest / fmax(o->curvature_radius, least_radius),
+    .anisotropy = o->anisotropy,
+    .adaptivity = o->adaptivity,
+    .coarser = o->pure_quads ? sqrt(quads_per_face) : 1 };
+  return aqr_sizing_build(&r->context, r->surface, &r->field, &sizing, &r->sizing);
 }
 
 static aqr_status meet_tolerance(aqr_remesher* r, const aqr_options* o)

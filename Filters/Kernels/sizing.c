@@ -11,7 +11,7 @@ enum
 
 static const double least_spacing = 1e-4; /* along a thread without area nothing else bounds the work */
 static const double finest = 0.5;         /* of the input's local size: lines closer than this would sample its noise */
-static const double densest = 0.25; /* of it: not even the user's density or largest spacing brings lines nearer */
+static const double densest = 0.25;  /* of it: not even the user's density or largest spacing brings lines nearer */
 static const double strongest = 1e3; /* factor on the spacing that the user's density has, and one over the least */
 static const double least_tolerance = 1e-9, most_tolerance = 0.25;
 static const double sparse =
@@ -22,9 +22,9 @@ typedef struct job
 {
   const aqr_surface* s;
   const aqr_field* field;
-  const double* density;
+  const aqr_sizing_options* options;
   const float* from;
-  double tolerance, largest_bend;
+  double tolerance, mean;
   aqr_sizing* sizing;
 } job;
 
@@ -40,8 +40,8 @@ static void measure(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     double c = v3_dot(v3_load(j->field->cross + 3 * v), v3_load(j->field->min_direction + 3 * v));
-    double c2 = fmin(1, c * c), a = fmin(fabs(j->field->k_min[v]), j->largest_bend);
-    double b = fmin(fabs(j->field->k_max[v]), j->largest_bend);
+    double c2 = fmin(1, c * c), a = fmin(fabs(j->field->k_min[v]), j->options->largest_bend);
+    double b = fmin(fabs(j->field->k_max[v]), j->options->largest_bend);
     j->sizing->bend[2 * v] = (float)(a * c2 + b * (1 - c2));
     j->sizing->bend[2 * v + 1] = (float)(a * (1 - c2) + b * c2);
   }
@@ -74,6 +74,45 @@ static void blur(void* data, size_t begin, size_t end)
   }
 }
 
+static double curvature_at(const aqr_sizing* z, size_t v)
+{
+  return fmax(flat_bend, sqrt((double)z->bend[2 * v] * (double)z->bend[2 * v + 1]));
+}
+
+static void make_squarer(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (size_t i = 2 * begin; i < 2 * end; i++)
+  {
+    double larger = fmax((double)j->from[i], (double)j->from[i ^ 1]),
+           ratio = larger > 0 ? (double)j->from[i] / larger : 1;
+    j->sizing->bend[i] = (float)(larger * pow(ratio, j->options->anisotropy));
+  }
+}
+
+/* Points per area go with the root of the product of the curvatures. */
+static void make_more_even(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    double factor = pow(j->mean / curvature_at(j->sizing, v), 1 - j->options->adaptivity);
+    for (size_t i = 2 * v; i < 2 * v + 2; i++)
+      j->sizing->bend[i] = (float)(factor * fmax(flat_bend, (double)j->sizing->bend[i]));
+  }
+}
+
+static double mean_curvature(const aqr_sizing* z)
+{
+  double sum = 0, area = 0;
+  for (size_t v = 0; v < z->n_points; v++)
+  {
+    sum += (double)z->area[v] * curvature_at(z, v);
+    area += (double)z->area[v];
+  }
+  return area > 0 ? sum / area : 1;
+}
+
 static void ask(void* data, size_t begin, size_t end)
 {
   job* j = data;
@@ -82,7 +121,7 @@ static void ask(void* data, size_t begin, size_t end)
     const aqr_origin* o = &j->s->origin[j->s->clean[v]];
     double d = 0;
     for (int i = 0; i < 3; i++)
-      d += (double)o->weight[i] * j->density[o->point[i]];
+      d += (double)o->weight[i] * j->options->density[o->point[i]];
     j->sizing->scale[v] = (float)fmin(strongest, fmax(1 / strongest, 1 / sqrt(d)));
   }
 }
@@ -92,7 +131,8 @@ static double spacing_at(const aqr_sizing* z, size_t point, unsigned branch, dou
   double size = sqrt((double)z->area[point]);
   double bend = fmax(z->least_bend, (double)z->bend[2 * point + branch]);
   double d = fmin(fmax(finest * size, spacing_of(bend, tolerance)), z->largest * z->stretch);
-  return fmax(fmax(least_spacing, densest * size), d * (z->scale ? (double)z->scale[point] * z->unit : 1));
+  d = fmax(densest * size, d * (z->scale ? (double)z->scale[point] * z->unit : 1));
+  return fmax(least_spacing, z->coarser * d);
 }
 
 static void space(void* data, size_t begin, size_t end)
@@ -204,12 +244,13 @@ double aqr_sizing_scale(const aqr_surface* s, const aqr_sizing* sizing, aqr_inde
   return sizing->scale ? scale : 1;
 }
 
-aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_field* field, const double* density,
-  double largest_spacing, double largest_bend, aqr_sizing* sizing)
+aqr_status aqr_sizing_build(
+  aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing_options* options, aqr_sizing* sizing)
 {
   memset(sizing, 0, sizeof *sizing);
   sizing->n_points = s->n_points;
-  sizing->largest = largest_spacing;
+  sizing->largest = options->largest_spacing;
+  sizing->coarser = options->coarser;
   sizing->stretch = sizing->unit = 1;
   aqr_status status = AQR_OK;
   float* from = AQR_NEW(c, float, 2 * s->n_points);
@@ -217,8 +258,8 @@ aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_fiel
   sizing->spacing = AQR_NEW(c, float, 2 * s->n_points);
   sizing->area = AQR_NEW(c, float, s->n_points);
   AQR_REQUIRE(from && sizing->bend && sizing->spacing && sizing->area, AQR_OUT_OF_MEMORY);
-  job j = { .s = s, .field = field, .density = density, .from = from, .largest_bend = largest_bend, .sizing = sizing };
-  if (density)
+  job j = { .s = s, .field = field, .options = options, .from = from, .sizing = sizing };
+  if (options->density)
   {
     sizing->scale = AQR_NEW(c, float, s->n_points);
     AQR_REQUIRE(sizing->scale, AQR_OUT_OF_MEMORY);
@@ -230,6 +271,16 @@ aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_fiel
   {
     memcpy(from, sizing->bend, 2 * s->n_points * sizeof *from);
     AQR_TRY(aqr_parallel(c, s->n_points, blur, &j, 0.2, 1));
+  }
+  if (options->anisotropy < 1)
+  {
+    memcpy(from, sizing->bend, 2 * s->n_points * sizeof *from);
+    AQR_TRY(aqr_parallel(c, s->n_points, make_squarer, &j, 1, 1));
+  }
+  if (options->adaptivity < 1)
+  {
+    j.mean = mean_curvature(sizing);
+    AQR_TRY(aqr_parallel(c, s->n_points, make_more_even, &j, 1, 1));
   }
 done:
   AQR_DROP(c, from, 2 * s->n_points);

@@ -15,14 +15,23 @@ typedef struct aqr_sizing
                      second branch */
   size_t n_points;
   double largest;
+  double coarser;             /* factor on every spacing, whatever else bounds it */
   double least_bend, stretch; /* of the curvatures and of `largest`, where a number of points is asked for */
   double unit;                /* factor on `scale`: 1, or what makes its density 1 on average */
 } aqr_sizing;
 
-/* density: NULL or one factor per INPUT point on points per area. largest_bend: curvatures above it are taken for
- * noise. */
-aqr_status aqr_sizing_build(aqr_context* c, const aqr_surface* s, const aqr_field* field, const double* density,
-  double largest_spacing, double largest_bend, aqr_sizing* sizing);
+typedef struct aqr_sizing_options
+{
+  const double* density; /* NULL, or one factor per INPUT point on points per area */
+  double largest_spacing;
+  double largest_bend; /* curvatures above it are taken for noise */
+  double anisotropy;   /* 0: both spacings as the larger curvature asks for; 1: each as its own */
+  double adaptivity;   /* 0: points per area everywhere as for the mean curvature; 1: as for each place's own */
+  double coarser;      /* factor on every spacing */
+} aqr_sizing_options;
+
+aqr_status aqr_sizing_build(
+  aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing_options* options, aqr_sizing* sizing);
 void aqr_sizing_free(aqr_context* c, aqr_sizing* sizing);
 
 /* Fills `spacing` for a tolerance (in scaled units). */

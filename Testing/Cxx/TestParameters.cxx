@@ -83,6 +83,8 @@ int TestParameters(int, char*[])
     filter->SetConfidenceAngle(91.0);
     filter->SetFeatureAngle(0.0);
     filter->SetLargestSpacing(0.0);
+    filter->SetAnisotropy(2.0);
+    filter->SetAdaptivity(-1.0);
     filter->SetLargestValence(3);
     filter->SetSeed(-1);
     filter->SetNumberOfThreads(-1);
@@ -91,14 +93,15 @@ int TestParameters(int, char*[])
     CHECK(filter->GetCurvatureRadius() == 0.0 && filter->GetSmoothingIterations() == 1000);
     CHECK(filter->GetConfidenceAngle() == 90.0 && filter->GetFeatureAngle() == 0.1);
     CHECK(filter->GetLargestSpacing() == 1e-4 && filter->GetLargestValence() == 4);
+    CHECK(filter->GetAnisotropy() == 1.0 && filter->GetAdaptivity() == 0.0);
     CHECK(filter->GetSeed() == 0 && filter->GetNumberOfThreads() == 0);
     CHECK(filter->GetDensityMode() == Filter::NUMBER_OF_POINTS);
     std::ostringstream text;
     filter->Print(text);
     for (const char* name : { "DensityMode", "Tolerance", "TargetNumberOfPoints", "UseDensityArray", "CurvatureRadius",
            "SmoothingIterations", "ConfidenceAngle", "FeatureLines", "FeatureAngle", "BoundaryLines", "LargestSpacing",
-           "LargestValence", "ConvexPartition", "PreserveTopology", "Seed", "NumberOfThreads", "GenerateDirections",
-           "GenerateConfidence", "GenerateLines" })
+           "Anisotropy", "Adaptivity", "PureQuads", "LargestValence", "ConvexPartition", "PreserveTopology", "Seed",
+           "NumberOfThreads", "GenerateDirections", "GenerateConfidence", "GenerateLines" })
     {
       checks.Check(text.str().find(std::string("  ") + name + ": ") != std::string::npos, name, __LINE__);
     }

@@ -109,6 +109,123 @@ AQR_TEST(no_two_lines_are_much_farther_apart_than_the_largest_spacing)
   shape_free(&m);
 }
 
+static double aspect_of(const aqr_mesh* m, double* unevenness)
+{
+  double sum = 0, areas = 0, squares = 0;
+  for (size_t f = 0; f < m->number_of_faces; f++)
+  {
+    const int64_t* at = m->connectivity + m->offsets[f];
+    size_t n = (size_t)(m->offsets[f + 1] - m->offsets[f]);
+    double shortest = INFINITY, longest = 0;
+    vec3 cross = v3(0, 0, 0), o = v3_load(m->points + 3 * at[0]);
+    for (size_t i = 0; i < n; i++)
+    {
+      vec3 a = v3_load(m->points + 3 * at[i]), b = v3_load(m->points + 3 * at[(i + 1) % n]);
+      double length = v3_norm(v3_sub(b, a));
+      shortest = fmin(shortest, length);
+      longest = fmax(longest, length);
+      cross = v3_add(cross, v3_cross(v3_sub(a, o), v3_sub(b, o)));
+    }
+    sum += longest / shortest;
+    areas += v3_norm(cross);
+    squares += v3_norm2(cross);
+  }
+  double count = (double)m->number_of_faces, mean = areas / count;
+  *unevenness = sqrt(fmax(0, squares / count - mean * mean)) / mean;
+  return sum / count;
+}
+
+/* On a slender spindle curvatures differ much, and most at its waist. */
+AQR_TEST(anisotropy_zero_makes_squares_and_adaptivity_zero_equal_faces)
+{
+  shape m = shape_ellipsoid(24, 0.2, 3, v3(1, 0.25, 0.2));
+  aqr_options o = options_for_points(1500);
+  aqr_remesher* r = remesh(&m, &o);
+  double full_spread, square_spread, even_spread;
+  double full = aspect_of(aqr_remesher_mesh(r), &full_spread);
+  o.adaptivity = 0;
+  CHECK(again(r, o) == AQR_OK);
+  double even = aspect_of(aqr_remesher_mesh(r), &even_spread);
+  o.adaptivity = 1;
+  o.anisotropy = 0;
+  CHECK(again(r, o) == AQR_OK);
+  double square = aspect_of(aqr_remesher_mesh(r), &square_spread);
+  printf("aspect and spread of areas: full %.2f %.2f, even %.2f %.2f, square %.2f %.2f\n", full, full_spread, even,
+    even_spread, square, square_spread);
+  CHECK(square < 0.8 * full && even_spread < 0.7 * full_spread);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+/* ---- pure quads ---- */
+
+AQR_TEST(pure_quads_leave_no_other_face_on_any_kind_of_surface)
+{
+  shape shapes[] = { shape_sphere(4, 20), shape_cube(6, 0.2, 21), shape_torus(20, 22), shape_cylinder(6, 23) };
+  for (int s = 0; s < 4; s++)
+    for (int tolerance = 0; tolerance < 2; tolerance++)
+    {
+      aqr_options o = options_for_points(300);
+      o.pure_quads = 1;
+      o.largest_spacing = 0.3;
+      o.density = tolerance ? AQR_DENSITY_TOLERANCE : AQR_DENSITY_POINTS;
+      o.tolerance = 0.01;
+      aqr_input input = shape_input(&shapes[s]);
+      aqr_status status;
+      const char* fault = examine(&input, &o, &status);
+      CHECK(!fault && status == AQR_OK);
+      aqr_remesher* r = remesh(&shapes[s], &o);
+      const aqr_mesh* out = aqr_remesher_mesh(r);
+      for (size_t f = 0; f < out->number_of_faces; f++)
+        CHECK(out->offsets[f + 1] - out->offsets[f] == 4);
+      if (!tolerance)
+        CHECK(aqr_remesher_report(r)->target_missed || fabs((double)points_of(r) / 300 - 1) < 0.05);
+      printf("shape %d: %zu points\n", s, points_of(r));
+      aqr_remesher_free(r);
+    }
+  for (int s = 0; s < 4; s++)
+    shape_free(&shapes[s]);
+}
+
+/* A ring with a square section of half the size of its hole. */
+static vec3 place_on_square_ring(double u, double v)
+{
+  double side = 4 * v, t = side - floor(side), along[4][2] = { { 1 + t, 0 }, { 2, t }, { 2 - t, 1 }, { 1, 1 - t } };
+  const double* at = along[(int)side % 4];
+  return v3(at[0] * cos(shape_turn * u), at[0] * sin(shape_turn * u), at[1]);
+}
+/* New points of creases and borders belong on them, not on the chords between their neighbours. */
+AQR_TEST(pure_quads_keep_rims_round)
+{
+  shape shapes[] = { shape_grid(64, 24, true, true, 0, 24, place_on_square_ring),
+    shape_grid(64, 16, true, false, 0, 25, place_on_cylinder) };
+  const double sagitta = 1 - cos(shape_turn / 128);
+  for (int s = 0; s < 2; s++)
+  {
+    aqr_options o = options_for_points(120);
+    o.pure_quads = 1;
+    o.largest_spacing = 1;
+    aqr_remesher* r = remesh(&shapes[s], &o);
+    const aqr_mesh* out = aqr_remesher_mesh(r);
+    size_t on_rims = 0;
+    double farthest = 0;
+    for (size_t i = 0; i < out->number_of_points; i++)
+    {
+      double radius = hypot(out->points[3 * i], out->points[3 * i + 1]);
+      double rim = s == 1 ? 0.3 : radius < 1.5 ? 1 : 2;
+      if (out->point_kind[i] == 0)
+        continue;
+      on_rims++;
+      farthest = fmax(farthest, fabs(radius / rim - 1));
+    }
+    printf("%zu of %zu points on rims\n", on_rims, out->number_of_points);
+    CHECK(on_rims > 15);
+    CHECK_BELOW(farthest, 1.001 * sagitta);
+    aqr_remesher_free(r);
+    shape_free(&shapes[s]);
+  }
+}
+
 /* ---- directions ---- */
 
 AQR_TEST(radius_and_smoothing_calm_a_noisy_field)
@@ -422,24 +539,29 @@ AQR_TEST(every_option_out_of_range_is_named)
   aqr_options good = options_for_points(50);
   aqr_remesher* r = remesh(&m, &good);
   uint64_t before = hash_results(r);
-  for (int k = 0; k < 24; k++)
+  for (int k = 0; k < 28; k++)
   {
     aqr_options o = good;
-    double low[] = { 0, -1, -1, 0, 1e-5, NAN, NAN, NAN }, high[] = { 0.2, 0.3, 91, 181, 1.1, INFINITY, NAN, NAN };
-    double* real[] = { &o.tolerance, &o.curvature_radius, &o.confidence_angle, &o.feature_angle, &o.largest_spacing,
-      &o.tolerance, &o.feature_angle, &o.curvature_radius };
-    const char* names[] = { "tolerance", "curvature_radius", "confidence_angle", "feature_angle", "largest_spacing",
-      "tolerance", "feature_angle", "curvature_radius" };
-    const char* name = names[k % 8];
-    if (k < 16)
-      *real[k % 8] = k < 8 ? low[k] : high[k - 8];
-    else if (k < 18)
-      o.target_points = k == 16 ? 3 : INT64_C(1) << 31, name = "target_points";
-    else if (k < 20)
-      o.smoothing_iterations = k == 18 ? -1 : 1001, name = "smoothing_iterations";
+    enum
+    {
+      n = 10
+    };
+    double low[n] = { 0, -1, -1, 0, 1e-5, -0.1, -0.1, NAN, NAN, NAN };
+    double high[n] = { 0.2, 0.3, 91, 181, 1.1, 1.1, NAN, INFINITY, NAN, NAN };
+    double* real[n] = { &o.tolerance, &o.curvature_radius, &o.confidence_angle, &o.feature_angle, &o.largest_spacing,
+      &o.anisotropy, &o.adaptivity, &o.tolerance, &o.feature_angle, &o.curvature_radius };
+    const char* names[n] = { "tolerance", "curvature_radius", "confidence_angle", "feature_angle", "largest_spacing",
+      "anisotropy", "adaptivity", "tolerance", "feature_angle", "curvature_radius" };
+    const char* name = names[k % n];
+    if (k < 2 * n)
+      *real[k % n] = k < n ? low[k] : high[k - n];
     else if (k < 22)
-      o.largest_valence = k == 20 ? 3 : 65, name = "largest_valence";
-    else if (k == 22)
+      o.target_points = k == 20 ? 3 : INT64_C(1) << 31, name = "target_points";
+    else if (k < 24)
+      o.smoothing_iterations = k == 22 ? -1 : 1001, name = "smoothing_iterations";
+    else if (k < 26)
+      o.largest_valence = k == 24 ? 3 : 65, name = "largest_valence";
+    else if (k == 26)
       o.density = (aqr_density)2, name = "density";
     else
       o.cookie = 0, name = "cookie";
@@ -459,27 +581,31 @@ AQR_TEST(no_value_of_any_option_is_without_a_defined_outcome)
 {
   const double wild[] = { NAN, INFINITY, -INFINITY, -1, -0.0, 0, DBL_TRUE_MIN, 1e-6, 1e-4, 0.2, 1, 90, 180, 1e9,
     DBL_MAX };
-  const double low[] = { 1e-7, 0, 0, 1e-6, 1e-4 }, high[] = { 0.1, 0.2, 90, 180, 1 };
+  enum
+  {
+    n = 7
+  };
+  const double low[n] = { 1e-7, 0, 0, 1e-6, 1e-4, 0, 0 }, high[n] = { 0.1, 0.2, 90, 180, 1, 1, 1 };
   shape shapes[] = { shape_sphere(3, 16), shape_cylinder(4, 17) };
   for (int s = 0; s < 2; s++)
-    for (size_t k = 0; k < 5 * sizeof wild / sizeof *wild; k++)
+    for (size_t k = 0; k < n * sizeof wild / sizeof *wild; k++)
     {
-      double x = wild[k / 5];
+      double x = wild[k / n];
       aqr_options o = options_for_points(30);
-      if (k % 5 == 0 && x >= 1e-7 && x < 1e-3)
+      if (k % n == 0 && x >= 1e-7 && x < 1e-3)
         continue;                                                          /* would only be slow */
-      o.density = k % 5 == 4 ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE; /* which bounds the finest spacing */
+      o.density = k % n == 4 ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE; /* which bounds the finest spacing */
       o.tolerance = 0.02;
       o.largest_spacing = 0.3;
-      double* value[] = { &o.tolerance, &o.curvature_radius, &o.confidence_angle, &o.feature_angle,
-        &o.largest_spacing };
-      *value[k % 5] = x;
+      double* value[] = { &o.tolerance, &o.curvature_radius, &o.confidence_angle, &o.feature_angle, &o.largest_spacing,
+        &o.anisotropy, &o.adaptivity };
+      *value[k % n] = x;
       aqr_input input = shape_input(&shapes[s]);
       aqr_status status;
       const char* fault = examine(&input, &o, &status);
-      aqr_status wanted = x >= low[k % 5] && x <= high[k % 5] ? AQR_OK : AQR_BAD_OPTION;
+      aqr_status wanted = x >= low[k % n] && x <= high[k % n] ? AQR_OK : AQR_BAD_OPTION;
       if (fault || status != wanted)
-        printf("shape %d, option %zu, value %g: %s, %s\n", s, k % 5, x, aqr_status_string(status), fault ? fault : "");
+        printf("shape %d, option %zu, value %g: %s, %s\n", s, k % n, x, aqr_status_string(status), fault ? fault : "");
       CHECK(!fault && status == wanted);
     }
   shape_free(&shapes[0]);

@@ -139,6 +139,9 @@ static aqr_options random_options(unsigned* state)
   o.feature_lines = shape_random(state) < 0.7;
   o.feature_angle = between(state, 10, 100);
   o.boundary_lines = shape_random(state) < 0.5;
+  o.anisotropy = between(state, 0, 1);
+  o.adaptivity = between(state, 0, 1);
+  o.pure_quads = shape_random(state) < 0.3;
   o.largest_spacing = pow(10, between(state, -1.5, 0));
   o.largest_valence = (int)between(state, 4, 12);
   o.convex_partition = shape_random(state) < 0.5;

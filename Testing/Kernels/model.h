@@ -39,7 +39,8 @@ static inline model model_field(shape m, double radius, int iterations)
 static inline model model_sizing(shape m, double radius, int iterations, const double* density, double largest)
 {
   model e = model_field(m, radius, iterations);
-  CHECK(aqr_sizing_build(&e.c, &e.s, &e.f, density, largest, 1000, &e.z) == AQR_OK);
+  const aqr_sizing_options sizing = { density, largest, 1000, 1, 1, 1 };
+  CHECK(aqr_sizing_build(&e.c, &e.s, &e.f, &sizing, &e.z) == AQR_OK);
   return e;
 }
 

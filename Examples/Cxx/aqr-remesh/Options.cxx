@@ -66,10 +66,10 @@ double Number(const std::string& name, const std::string& text, double low, doub
     }                                                                                                                  \
   }
 
-#define AQR_SWITCH_OFF(option, parameter, help)                                                                        \
+#define AQR_SWITCH(option, parameter, state, help)                                                                     \
   Option                                                                                                               \
   {                                                                                                                    \
-    option, "", help, [filter](const std::string&) { filter->parameter##Off(); }                                       \
+    option, "", help, [filter](const std::string&) { filter->parameter##state(); }                                     \
   }
 
 //------------------------------------------------------------------------------
@@ -95,6 +95,13 @@ std::vector<Option> AllOptions(Filter* filter, Options& options)
       } },
     AQR_NUMBER("--largest-spacing", "F", LargestSpacing, false,
       "largest distance of neighbouring lines, as a fraction of the diagonal"),
+    AQR_NUMBER("--anisotropy", "F", Anisotropy, false,
+      "stretch of the faces where curvatures differ, from 0 (squares) to 1 (full)"),
+    AQR_NUMBER("--adaptivity", "F", Adaptivity, false,
+      "how far the density follows the curvature, from 0 (the same everywhere) to 1 (full)"),
+    AQR_SWITCH("--pure-quads", PureQuads, On,
+      "quads only: lines twice as far apart, then every face cut into quads; default: triangles and pentagons where "
+      "lines end"),
     AQR_NUMBER("--curvature-radius", "F", CurvatureRadius, false,
       "radius over which curvature is averaged, as a fraction of the diagonal"),
     AQR_NUMBER("--smoothing", "N", SmoothingIterations, true, "smoothing iterations of the direction field"),
@@ -102,12 +109,12 @@ std::vector<Option> AllOptions(Filter* filter, Options& options)
       "degrees by which directions may differ inside a face before it counts as isotropic"),
     AQR_NUMBER("--feature-angle", "A", FeatureAngle, false,
       "degrees by which two faces depart from flat before their edge counts as a crease"),
-    AQR_SWITCH_OFF("--no-features", FeatureLines, "do not keep creases; default: they become edges"),
-    AQR_SWITCH_OFF("--no-boundary", BoundaryLines, "do not follow the boundary; default: it becomes edges"),
+    AQR_SWITCH("--no-features", FeatureLines, Off, "do not keep creases; default: they become edges"),
+    AQR_SWITCH("--no-boundary", BoundaryLines, Off, "do not follow the boundary; default: it becomes edges"),
     AQR_NUMBER("--largest-valence", "N", LargestValence, true, "most corners a face may have"),
-    AQR_SWITCH_OFF("--no-convex", ConvexPartition, "leave concave faces as they are; default: they are split"),
-    AQR_SWITCH_OFF(
-      "--no-topology", PreserveTopology, "let handles and holes smaller than the spacing vanish; default: keep all"),
+    AQR_SWITCH("--no-convex", ConvexPartition, Off, "leave concave faces as they are; default: they are split"),
+    AQR_SWITCH("--no-topology", PreserveTopology, Off,
+      "let handles and holes smaller than the spacing vanish; default: keep all"),
     AQR_NUMBER("--seed", "N", Seed, true, "breaks ties between equally good places to begin a line"),
     AQR_NUMBER("--threads", "N", NumberOfThreads, true, "threads, 0 for all; the result does not depend on it"),
     { "--lines", "FILE", "also write the traced lines, to .vtp or .vtk; default: none", path(options.Lines) },
