@@ -448,6 +448,16 @@ AQR_TEST(every_unusable_input_has_its_status)
   CHECK(status_of_input(&input) == AQR_NON_FINITE_POINT);
   points[4] = points[7] = 0;
   CHECK(status_of_input(&input) == AQR_DEGENERATE_INPUT);
+  points[7] = 1;
+  CHECK(status_of_input(&input) == AQR_OK);
+  /* nothing may be read before the sizes are known to be good */
+  input.number_of_triangles = UINT32_MAX / 12 + 1;
+  CHECK(status_of_input(&input) == AQR_TOO_LARGE);
+  input.number_of_triangles = SIZE_MAX;
+  CHECK(status_of_input(&input) == AQR_TOO_LARGE);
+  input.number_of_triangles = 1;
+  input.number_of_points = UINT32_MAX / 6 + 1;
+  CHECK(status_of_input(&input) == AQR_TOO_LARGE);
 }
 
 AQR_TEST(every_status_has_a_sentence_of_its_own)
@@ -610,6 +620,33 @@ AQR_TEST(no_value_of_any_option_is_without_a_defined_outcome)
     }
   shape_free(&shapes[0]);
   shape_free(&shapes[1]);
+}
+
+/* In units from the smallest to the largest: at the ends of the range nothing may vanish or overflow. */
+AQR_TEST(the_finest_and_the_coarsest_tolerance_give_a_valid_mesh_in_any_unit)
+{
+  const double units[] = { 1e-30, 1e-12, 1, 1e12, 1e30 }, tolerances[] = { 0.1, 1e-3, 1e-7 };
+  for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+  {
+    shape m = shape_grid(24, 3, false, false, 0.2, 1, place_on_cylinder);
+    for (size_t i = 0; i < 3 * m.n_points; i++)
+      m.points[i] *= i % 3 == 2 ? 0.1 * units[u] : units[u];
+    size_t fewer = 0;
+    for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; k++)
+    {
+      aqr_options o = aqr_default_options();
+      o.tolerance = tolerances[k];
+      aqr_input input = shape_input(&m);
+      aqr_status status;
+      CHECK(!examine(&input, &o, &status) && status == AQR_OK);
+      aqr_remesher* r = remesh(&m, &o);
+      printf("%g at %g: %zu points\n", tolerances[k], units[u], points_of(r));
+      CHECK(points_of(r) > fewer);
+      fewer = points_of(r);
+      aqr_remesher_free(r);
+    }
+    shape_free(&m);
+  }
 }
 
 AQR_TEST(options_that_contradict_each_other_still_give_a_valid_mesh)

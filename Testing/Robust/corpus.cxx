@@ -44,7 +44,7 @@ struct Set
   const char* Name;
   void (*Apply)(vtkAnisotropicQuadRemesher*);
 };
-const std::array<Set, 3> Sets = { {
+const std::array<Set, 4> Sets = { {
   { "default", [](vtkAnisotropicQuadRemesher*) {} },
   { "few points",
     [](vtkAnisotropicQuadRemesher* f)
@@ -61,6 +61,15 @@ const std::array<Set, 3> Sets = { {
       f->BoundaryLinesOff();
       f->ConvexPartitionOff();
       f->SetFeatureAngle(15);
+    } },
+  { "pure quads",
+    [](vtkAnisotropicQuadRemesher* f)
+    {
+      f->SetDensityModeToNumberOfPoints();
+      f->SetTargetNumberOfPoints(400);
+      f->PureQuadsOn();
+      f->SetAnisotropy(0.3);
+      f->SetAdaptivity(0.3);
     } },
 } };
 

@@ -146,20 +146,17 @@ static verdict judge_surface(const aqr_field_view* f)
   return v;
 }
 
-static const char* check_results(const aqr_remesher* r, const aqr_input* input, const aqr_options* o)
+const char* examine_results(const aqr_mesh* m, const aqr_field_view* f, const aqr_report* report,
+  const aqr_input* input, const aqr_options* options)
 {
-  const aqr_mesh* m = aqr_remesher_mesh(r);
-  const aqr_field_view* f = aqr_remesher_field(r);
-  if (!m || !f || !aqr_remesher_lines(r))
-    return "no result after success";
   verdict surface = judge_surface(f);
   verdict mesh = judge_mesh(m->number_of_points, m->points, m->number_of_faces, m->offsets, m->connectivity);
   const char* fault = mesh.fault ? mesh.fault : surface.fault;
-  if (!fault && o->preserve_topology)
+  if (!fault && options->preserve_topology)
     fault = judge_pair(&surface, &mesh);
-  if (!fault && surface.boundary_loops != aqr_remesher_report(r)->boundary_loops)
+  if (!fault && surface.boundary_loops != report->boundary_loops)
     fault = "the report's boundary loops are not those of the surface";
-  if (!fault && surface.components != aqr_remesher_report(r)->components)
+  if (!fault && surface.components != report->components)
     fault = "the report's components are not those of the surface";
   if (!fault)
     fault = check_attributes(m, input);
@@ -172,9 +169,18 @@ static const char* check_results(const aqr_remesher* r, const aqr_input* input, 
       "surface: %zu points, Euler %ld, %zu loops, %zu components; mesh: %zu points, %ld, %zu, %zu; "
       "report: %zu loops, %zu components; %s\n",
       f->number_of_points, surface.euler, surface.boundary_loops, surface.components, m->number_of_points, mesh.euler,
-      mesh.boundary_loops, mesh.components, aqr_remesher_report(r)->boundary_loops, aqr_remesher_report(r)->components,
+      mesh.boundary_loops, mesh.components, report->boundary_loops, report->components,
       surface.fault ? "the surface is at fault" : fault);
   return fault;
+}
+
+static const char* check_results(const aqr_remesher* r, const aqr_input* input, const aqr_options* o)
+{
+  const aqr_mesh* m = aqr_remesher_mesh(r);
+  const aqr_field_view* f = aqr_remesher_field(r);
+  if (!m || !f || !aqr_remesher_lines(r))
+    return "no result after success";
+  return examine_results(m, f, aqr_remesher_report(r), input, o);
 }
 
 static const char* run_once(

@@ -11,4 +11,8 @@
  * two runs in different order, no byte left. *status: what the run said. */
 const char* examine(const aqr_input* input, const aqr_options* options, aqr_status* status);
 
+/* The part of it that looks at one result. */
+const char* examine_results(const aqr_mesh* m, const aqr_field_view* f, const aqr_report* report,
+  const aqr_input* input, const aqr_options* options);
+
 #endif
