@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Paper 5: intersections per face, edges along lines, and the half-edge structure. */
+/* Paper 5: edges along lines, and the half-edge structure. */
 #include "network.h"
+
+#include "crossings.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,180 +15,12 @@ typedef struct builder
   const aqr_chains* chains;
   double tolerance[2]; /* of feature and boundary chains */
   aqr_network* net;
-  size_t* first; /* per sample: its chord's crossings begin here in `on`; n_samples + 1 */
-  aqr_index* on; /* crossings along chords, in order */
-  size_t n_on;
+  aqr_crossing_order order;
   aqr_index* alive;   /* per line: its nodes that are alive */
   uint8_t* reached;   /* per line: what of it lives hangs together with an edge of the surface */
   aqr_index* stop_of; /* per sample: the stop at a line's end on a chain, or AQR_NONE */
   aqr_index* node_of; /* per cleaned point: the stop of a node of the feature graph */
 } builder;
-
-/* ---- crossings ---- */
-
-static aqr_status find_crossings(builder* b)
-{
-  const aqr_surface* s = b->s;
-  const aqr_lines* l = b->l;
-  aqr_network* net = b->net;
-  for (aqr_index f = 0; f < s->n_faces; f++)
-  {
-    if (f % 65536 == 0 && !aqr_step(b->c, 0.2 * (double)f / (double)s->n_faces))
-      return AQR_CANCELLED;
-    for (aqr_index i = l->head[f]; i != AQR_NONE; i = l->segments[i].next)
-    {
-      aqr_index p = l->segments[i].sample;
-      if (l->lines[l->segments[i].line].is_chain)
-        continue;
-      for (aqr_index j = l->segments[i].next; j != AQR_NONE; j = l->segments[j].next)
-      {
-        aqr_index q = l->segments[j].sample;
-        if (l->lines[l->segments[j].line].is_chain)
-          continue;
-        int turn = aqr_chords_cross(s, f, &l->samples[p], &l->samples[p + 1], &l->samples[q], &l->samples[q + 1]);
-        if (!turn)
-          continue;
-        if (!AQR_RESERVE(b->c, net->crossings, net->crossing_capacity, net->n_crossings + 1))
-          return AQR_OUT_OF_MEMORY;
-        net->crossings[net->n_crossings++] = (aqr_crossing){ { p, q }, { l->segments[i].line, l->segments[j].line },
-          { AQR_NONE, AQR_NONE }, { AQR_NONE, AQR_NONE }, (int8_t)turn, true };
-      }
-    }
-  }
-  return net->n_crossings < AQR_NONE / 8 ? AQR_OK : AQR_TOO_LARGE;
-}
-
-static aqr_status list_by_chord(builder* b)
-{
-  const aqr_network* net = b->net;
-  size_t n = b->l->n_samples;
-  b->n_on = 2 * net->n_crossings;
-  b->first = AQR_NEW0(b->c, size_t, n + 2);
-  b->on = AQR_NEW(b->c, aqr_index, b->n_on);
-  if (!b->first || !b->on)
-    return AQR_OUT_OF_MEMORY;
-  for (size_t i = 0; i < net->n_crossings; i++)
-    for (unsigned k = 0; k < 2; k++)
-      b->first[net->crossings[i].chord[k] + 2]++;
-  for (size_t i = 0; i < n; i++)
-    b->first[i + 2] += b->first[i + 1];
-  for (size_t i = 0; i < net->n_crossings; i++)
-    for (unsigned k = 0; k < 2; k++)
-      b->on[b->first[net->crossings[i].chord[k] + 1]++] = (aqr_index)i;
-  return AQR_OK;
-}
-
-static unsigned side_of(const aqr_crossing* x, aqr_index chord)
-{
-  return x->chord[0] == chord ? 0 : 1;
-}
-
-/* Whether x's other chord runs from the right of `chord` to its left (1) or from its left (-1). */
-static int turn_on(const aqr_crossing* x, aqr_index chord)
-{
-  return side_of(x, chord) == 0 ? x->turn : -x->turn;
-}
-
-/* Twice as many places as are told apart along an edge where three chords nearly meet. Large enough for the order of
- * crossings to be the true one wherever it can be seen, small enough for 64 bits. */
-#define AQR_PLACES ((int64_t)1 << 15)
-#define AQR_HALF_WORD ((int64_t)1 << 31)
-
-/* A chord's end in barycentric coordinates of its face, times AQR_PLACES; or how these change as it moves along the
- * face's border. Never at a corner, so that ends on two sides differ. */
-static void end_at(const builder* b, aqr_index f, const aqr_sample* a, bool moving, int64_t w[3])
-{
-  aqr_index h = aqr_sample_half_edge(b->s, a, f), k = h % 3;
-  int64_t t = 2 * (int64_t)(a->t * (double)(AQR_PLACES >> 1)) + 1;
-  if (t >= AQR_PLACES)
-    t = AQR_PLACES - 1;
-  if (h != a->edge)
-    t = AQR_PLACES - t;
-  w[k] = moving ? -1 : AQR_PLACES - t;
-  w[(k + 1) % 3] = moving ? 1 : t;
-  w[(k + 2) % 3] = 0;
-}
-
-static void cross(const int64_t a[3], const int64_t b[3], int64_t c[3])
-{
-  for (unsigned i = 0; i < 3; i++)
-    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-/* The sign of the determinant of three lines, exact: their numbers are below 2^30, those of the product of two below
- * 2^61, which is taken in two halves. */
-static int determinant(int64_t line[3][3])
-{
-  int64_t m[3], high = 0, low = 0;
-  cross(line[1], line[2], m);
-  for (unsigned i = 0; i < 3; i++)
-  {
-    high += line[0][i] * (m[i] / AQR_HALF_WORD);
-    low += line[0][i] * (m[i] % AQR_HALF_WORD);
-  }
-  high += low / AQR_HALF_WORD;
-  low %= AQR_HALF_WORD;
-  return high ? (high > 0 ? 1 : -1) : (low > 0) - (low < 0);
-}
-
-/* Orientation of three chords of face f that cross each other pairwise: the sign of the determinant of their lines.
- *
- * The orders of crossings that follow along the chords must be those of some straight lines, or the loops around these
- * crossings would close no disks. So the sign is exact, and where the three lines meet in one point each end counts as
- * moved a little along the border, ends farther along infinitely more than those before them: that keeps the order of
- * ends along the border, which decides who crosses whom, also where chords coincide. The sign is then that of the first
- * derivative that does not vanish. */
-static int triple(const builder* b, aqr_index f, aqr_index a, aqr_index p, aqr_index q)
-{
-  const aqr_sample* m = b->l->samples;
-  const aqr_sample* end[6] = { &m[a], &m[a + 1], &m[p], &m[p + 1], &m[q], &m[q + 1] };
-  unsigned rank[6] = { 0 }; /* 0: the farthest along the border */
-  for (unsigned moved = 0; moved < 64; moved++)
-  {
-    int64_t line[3][3], w[2][3];
-    for (unsigned i = 0; moved == 1 && i < 6; i++)
-      for (unsigned j = 0; j < 6; j++)
-        rank[i] += aqr_border_before(b->s, f, end[i], end[j]);
-    for (unsigned i = 0; i < 3; i++)
-    {
-      for (unsigned k = 0; k < 2; k++)
-        end_at(b, f, end[2 * i + k], moved >> rank[2 * i + k] & 1, w[k]);
-      cross(w[0], w[1], line[i]);
-    }
-    int sign = determinant(line);
-    if (sign)
-      return sign;
-  }
-  return 1; /* not reached: no chord begins and ends on one edge */
-}
-
-/* Whether crossing x comes before crossing y along chord a. */
-static bool comes_before(const builder* b, aqr_index a, aqr_index x, aqr_index y)
-{
-  const aqr_crossing *cx = &b->net->crossings[x], *cy = &b->net->crossings[y];
-  aqr_index p = cx->chord[!side_of(cx, a)], q = cy->chord[!side_of(cy, a)], f = b->l->samples[a].face;
-  const aqr_sample* m = b->l->samples;
-  if (aqr_chords_cross(b->s, f, &m[p], &m[p + 1], &m[q], &m[q + 1]))
-    return triple(b, f, a, p, q) * turn_on(cx, a) * turn_on(cy, a) > 0;
-  /* p and q do not cross, so q lies whole on one side of p: on that of a's start or on that of its end */
-  bool wraps = aqr_border_before(b->s, f, &m[p + 1], &m[p]);
-  const aqr_sample *low = wraps ? &m[p + 1] : &m[p], *high = wraps ? &m[p] : &m[p + 1];
-  bool start = aqr_border_before(b->s, f, low, &m[a]) && aqr_border_before(b->s, f, &m[a], high);
-  bool other = aqr_border_before(b->s, f, low, &m[q]) && aqr_border_before(b->s, f, &m[q], high);
-  return start != other;
-}
-
-static void order_along_chords(builder* b)
-{
-  for (size_t a = 0; a < b->l->n_samples; a++)
-    for (size_t i = b->first[a]; i < b->first[a + 1]; i++)
-      for (size_t j = i; j > b->first[a] && comes_before(b, (aqr_index)a, b->on[j], b->on[j - 1]); j--)
-      {
-        aqr_index swap = b->on[j];
-        b->on[j] = b->on[j - 1];
-        b->on[j - 1] = swap;
-      }
-}
 
 /* ---- pruning ---- */
 
@@ -199,8 +33,8 @@ static bool ends_on_chain(const aqr_line* line, unsigned end)
 static void crossings_of(const builder* b, aqr_index id, size_t* first, size_t* end)
 {
   const aqr_line* line = &b->l->lines[id];
-  *first = b->first[line->first];
-  *end = b->first[line->first + line->count - 1];
+  *first = b->order.first[line->first];
+  *end = b->order.first[line->first + line->count - 1];
 }
 
 /* Whether the part of a line that lives passes an edge of the surface. */
@@ -211,8 +45,8 @@ static bool passes_edge(const builder* b, aqr_index id)
     return true;
   aqr_index chord = AQR_NONE;
   for (size_t a = line->first; a + 1 < line->first + line->count; a++)
-    for (size_t i = b->first[a]; i < b->first[a + 1]; i++)
-      if (b->net->crossings[b->on[i]].alive)
+    for (size_t i = b->order.first[a]; i < b->order.first[a + 1]; i++)
+      if (b->net->crossings[b->order.on[i]].alive)
       {
         if (chord != AQR_NONE && chord != a)
           return true;
@@ -239,7 +73,7 @@ static void prune_inside_faces(builder* b, aqr_index* stack)
     crossings_of(b, stack[--n], &first, &end);
     for (size_t i = first; i < end; i++)
     {
-      const aqr_crossing* x = &net->crossings[b->on[i]];
+      const aqr_crossing* x = &net->crossings[b->order.on[i]];
       for (unsigned k = 0; k < 2; k++)
         if (x->alive && !reached[x->line[k]])
         {
@@ -286,7 +120,7 @@ static aqr_status prune(builder* b)
     crossings_of(b, stack[--n], &first, &end);
     for (size_t i = first; i < end; i++)
     {
-      aqr_crossing* x = &b->net->crossings[b->on[i]];
+      aqr_crossing* x = &b->net->crossings[b->order.on[i]];
       if (!x->alive)
         continue;
       x->alive = false;
@@ -629,12 +463,12 @@ static aqr_status connect_line(builder* b, aqr_index id)
   if (b->stop_of[first] != AQR_NONE)
     before = start = (walker){ n + b->stop_of[first], first, 0 };
   for (size_t a = first; a < last; a++)
-    for (size_t i = b->first[a]; i < b->first[a + 1]; i++)
+    for (size_t i = b->order.first[a]; i < b->order.first[a + 1]; i++)
     {
-      const aqr_crossing* x = &b->net->crossings[b->on[i]];
+      const aqr_crossing* x = &b->net->crossings[b->order.on[i]];
       if (!x->alive)
         continue;
-      walker here = { b->on[i], a, side_of(x, (aqr_index)a) };
+      walker here = { b->order.on[i], a, aqr_side_of(x, (aqr_index)a) };
       if (before.node == AQR_NONE)
         start = here;
       else
@@ -963,15 +797,12 @@ aqr_status aqr_network_build(aqr_context* c, const aqr_surface* s, const aqr_lin
     net->edge_at[i] = b.stop_of[i] = AQR_NONE;
   for (size_t i = 0; i < s->n_clean; i++)
     b.node_of[i] = AQR_NONE;
-  AQR_TRY(find_crossings(&b));
-  AQR_TRY(list_by_chord(&b));
-  order_along_chords(&b);
+  AQR_TRY(aqr_crossings_find(c, s, lines, net, &b.order));
   AQR_TRY(prune(&b));
   AQR_TRY(place_stops(&b));
   AQR_TRY(connect(&b));
 done:
-  AQR_DROP(c, b.first, lines->n_samples + 2);
-  AQR_DROP(c, b.on, b.n_on);
+  aqr_crossing_order_free(c, &b.order);
   AQR_DROP(c, b.alive, lines->n_lines);
   AQR_DROP(c, b.reached, lines->n_lines);
   AQR_DROP(c, b.stop_of, lines->n_samples);

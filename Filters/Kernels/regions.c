@@ -2,31 +2,11 @@
 /* Topology kept: where the paper (6) lets small handles vanish, regions that are not disks get another line. */
 #include "regions.h"
 
+#include "face_layout.h"
+
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A chord's end on the border of a face. */
-typedef struct border_mark
-{
-  aqr_index sample, chord, line;
-  bool starts;   /* the chord starts here, else it ends here */
-  bool kept;     /* an edge of the network passes */
-  unsigned cell; /* of the stretch of border that follows counter-clockwise */
-} border_mark;
-
-/* The cells of one face. */
-typedef struct layout
-{
-  aqr_index face;
-  border_mark* marks; /* counter-clockwise from corner 0 */
-  size_t n_marks, capacity;
-  uint64_t* signature;
-  size_t signature_capacity;
-  aqr_index* group; /* of stretches, union-find */
-  size_t group_capacity;
-  aqr_index* item; /* per cell: an item of its region */
-  size_t n_cells, item_capacity;
-} layout;
 
 /* A piece of a cell's border: of an edge of the face, or a contact with the network. */
 typedef struct piece
@@ -51,12 +31,17 @@ typedef struct regions
   const aqr_chains* chains;
   const aqr_network* net;
   aqr_lines* lines;
-  aqr_index* parent; /* union-find over items: faces without chords, then loops */
+  /* Shared by threads; whatever their order, a root is the least item of its region and sums are the same. */
+  _Atomic(aqr_index)* parent; /* union-find over items: faces without chords, then loops */
   size_t n_items;
-  int32_t* euler;    /* per root */
-  uint8_t* bordered; /* per root: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
-  uint8_t* suspect;  /* per face: looked at */
-  layout at;         /* of the face looked at */
+  _Atomic(int32_t)* euler; /* per root */
+  _Atomic(uint8_t)*
+    bordered;       /* per root: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
+  uint8_t* suspect; /* per face: looked at */
+  uint8_t* large;   /* per face: has more chords than threads have room for */
+  uint8_t* is_bare; /* per face: of a component without network */
+  aqr_index* start; /* per half-edge: the item where it begins, AQR_NONE where it is cut */
+  aqr_layout at;    /* of the face looked at */
   /* of regions to be cut */
   aqr_index* slot; /* per face: where its pieces are listed, or AQR_NONE */
   slot* slots;
@@ -80,174 +65,86 @@ typedef struct regions
   size_t n_arcs, arc_capacity;
 } regions;
 
-static aqr_index find(aqr_index* parent, aqr_index i)
+/* ---- items ---- */
+
+static aqr_index above(const regions* r, aqr_index i)
 {
-  while (parent[i] != i)
+  return atomic_load_explicit(&r->parent[i], memory_order_relaxed);
+}
+
+static aqr_index find(const regions* r, aqr_index i)
+{
+  for (;;)
   {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
+    aqr_index a = above(r, i), b = above(r, a);
+    if (a == b)
+      return a;
+    atomic_store_explicit(&r->parent[i], b, memory_order_relaxed); /* whoever else does that stores an ancestor too */
+    i = b;
   }
-  return i;
 }
 
-static void unite(aqr_index* parent, aqr_index a, aqr_index b)
+static void unite(const regions* r, aqr_index a, aqr_index b)
 {
-  a = find(parent, a);
-  b = find(parent, b);
-  if (a < b)
-    parent[b] = a;
-  else
-    parent[a] = b;
-}
-
-static uint64_t hash(uint64_t x)
-{
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-/* The loop on the stretch of border after the mark: right of a chord that starts, left of one that ends. */
-static aqr_index item_after(const regions* r, const border_mark* m)
-{
-  aqr_index edge = r->net->edge_at[m->sample];
-  return (aqr_index)r->s->n_faces + r->net->loop[2 * edge + (m->starts ? 1 : 0)];
-}
-
-static aqr_index item_before(const regions* r, const border_mark* m)
-{
-  aqr_index edge = r->net->edge_at[m->sample];
-  return (aqr_index)r->s->n_faces + r->net->loop[2 * edge + (m->starts ? 0 : 1)];
-}
-
-static aqr_status gather_marks(regions* r, aqr_index f)
-{
-  layout* a = &r->at;
-  const aqr_lines* l = r->lines;
-  a->face = f;
-  a->n_marks = 0;
-  bool any = false;
-  for (aqr_index k = l->head[f]; k != AQR_NONE; k = l->segments[k].next)
+  for (;;)
   {
-    aqr_index n = l->segments[k].sample;
-    if (l->lines[l->segments[k].line].is_chain)
-      continue;
-    if (!AQR_RESERVE(r->c, a->marks, a->capacity, a->n_marks + 2))
-      return AQR_OUT_OF_MEMORY;
-    for (unsigned i = 0; i < 2; i++)
-    {
-      border_mark m = { n + i, n, l->segments[k].line, i == 0, r->net->edge_at[n + i] != AQR_NONE, 0 };
-      any |= m.kept;
-      size_t j = a->n_marks++;
-      for (; j > 0 && aqr_border_before(r->s, f, &l->samples[m.sample], &l->samples[a->marks[j - 1].sample]); j--)
-        a->marks[j] = a->marks[j - 1];
-      a->marks[j] = m;
-    }
+    a = find(r, a);
+    b = find(r, b);
+    if (a == b)
+      return;
+    aqr_index high = a > b ? a : b, low = a > b ? b : a;
+    if (atomic_compare_exchange_strong_explicit(
+          &r->parent[high], &(aqr_index){ high }, low, memory_order_relaxed, memory_order_relaxed))
+      return;
   }
-  if (!any)
-    a->n_marks = 0;
-  return AQR_OK;
 }
 
-/* Sorts out which stretches of the face's border belong to one cell: those that no chord separates, and those on both
- * sides of a chord's end that the network left out. */
-static aqr_status lay_out(regions* r, aqr_index f)
+static void add_euler(const regions* r, aqr_index root, int32_t more)
 {
-  layout* a = &r->at;
-  aqr_status status = gather_marks(r, f);
-  if (status != AQR_OK)
-    return status;
-  if (!AQR_RESERVE(r->c, a->item, a->item_capacity, a->n_marks + 1) ||
-      !AQR_RESERVE(r->c, a->signature, a->signature_capacity, a->n_marks + 1) ||
-      !AQR_RESERVE(r->c, a->group, a->group_capacity, a->n_marks + 1))
-    return AQR_OUT_OF_MEMORY;
-  if (a->n_marks == 0)
-  {
-    a->n_cells = 1;
-    a->item[0] = f;
-    return AQR_OK;
-  }
-  uint64_t signature = 0;
-  for (size_t i = 0; i < a->n_marks; i++)
-  {
-    signature ^= hash(a->marks[i].chord);
-    a->signature[i] = signature;
-  }
-  size_t n = a->n_marks;
-  for (size_t i = 0; i < n; i++)
-    a->group[i] = (aqr_index)i;
-  for (size_t i = 0; i < n; i++)
-  {
-    if (!a->marks[i].kept)
-      unite(a->group, (aqr_index)i, (aqr_index)((i + n - 1) % n));
-    size_t j = i; /* equal signatures: to the nearest one before is enough */
-    while (j > 0 && a->signature[j - 1] != a->signature[i])
-      j--;
-    if (j > 0)
-      unite(a->group, (aqr_index)i, (aqr_index)(j - 1));
-  }
-  a->n_cells = 0;
-  for (size_t i = 0; i < n; i++)
-    if (find(a->group, (aqr_index)i) == i) /* the least of its group, so that it is numbered first */
-    {
-      a->marks[i].cell = (unsigned)a->n_cells;
-      a->item[a->n_cells++] = AQR_NONE;
-    }
-  for (size_t i = 0; i < n; i++)
-    a->marks[i].cell = a->marks[find(a->group, (aqr_index)i)].cell;
-  for (size_t i = 0; i < n; i++)
-  {
-    if (a->marks[i].kept)
-      a->item[a->marks[i].cell] = item_after(r, &a->marks[i]);
-    if (a->marks[(i + 1) % n].kept)
-      a->item[a->marks[i].cell] = item_before(r, &a->marks[(i + 1) % n]);
-  }
-  return AQR_OK;
+  atomic_fetch_add_explicit(&r->euler[root], more, memory_order_relaxed);
 }
 
-/* The marks on half-edge k of the face: [*first, *end). The stretch before *first belongs to the cell of the mark
- * before. */
-static void marks_on(const regions* r, unsigned k, size_t* first, size_t* end)
+static void add_border(const regions* r, aqr_index root, uint8_t bits)
 {
-  const layout* a = &r->at;
-  aqr_index h = 3 * a->face + k;
-  size_t i = 0;
-  while (i < a->n_marks && aqr_sample_half_edge(r->s, &r->lines->samples[a->marks[i].sample], a->face) < h)
-    i++;
-  *first = i;
-  while (i < a->n_marks && aqr_sample_half_edge(r->s, &r->lines->samples[a->marks[i].sample], a->face) == h)
-    i++;
-  *end = i;
+  atomic_fetch_or_explicit(&r->bordered[root], bits, memory_order_relaxed);
 }
 
-static unsigned cell_before(const layout* a, size_t mark)
+static aqr_index item_after(const regions* r, const aqr_border_mark* m)
 {
-  return a->n_marks ? a->marks[(mark + a->n_marks - 1) % a->n_marks].cell : 0;
+  return aqr_item_after(r->s, r->net, m);
+}
+
+static aqr_index item_before(const regions* r, const aqr_border_mark* m)
+{
+  return aqr_item_before(r->s, r->net, m);
+}
+
+static bool lay_out(regions* r, aqr_index f)
+{
+  return aqr_layout_face(r->c, r->s, r->lines, r->net, f, &r->at);
 }
 
 /* ---- counting ---- */
 
-static aqr_index item_at_start(const regions* r, unsigned k)
+static aqr_index item_at_start(const aqr_layout* a, unsigned k)
 {
   size_t first, end;
-  marks_on(r, k, &first, &end);
-  return r->at.item[cell_before(&r->at, first)];
+  aqr_layout_marks_on(a, k, &first, &end);
+  return a->item[aqr_layout_cell_before(a, first)];
 }
 
-static size_t kept_on(const regions* r, unsigned k)
+static size_t kept_on(const aqr_layout* a, unsigned k)
 {
   size_t first, end, kept = 0;
-  marks_on(r, k, &first, &end);
+  aqr_layout_marks_on(a, k, &first, &end);
   for (size_t i = first; i < end; i++)
-    kept += r->at.marks[i].kept;
+    kept += a->marks[i].kept;
   return kept;
 }
 
 /* Unites the cells that border chains with the loops there, where no mark tells the loop already. */
-static void unite_with_chains(regions* r)
+static void unite_with_chains(const regions* r, const aqr_layout* a)
 {
-  const layout* a = &r->at;
   for (aqr_index k = r->lines->head[a->face]; k != AQR_NONE; k = r->lines->segments[k].next)
   {
     aqr_index n = r->lines->segments[k].sample;
@@ -256,17 +153,9 @@ static void unite_with_chains(regions* r)
     aqr_index left = r->lines->samples[n].edge, edge = r->net->edge_at[n];
     bool right = aqr_face_of(left) != a->face;
     aqr_index h = right ? aqr_any_twin(r->s, left) : left;
-    if (kept_on(r, h % 3) == 0)
-      unite(r->parent, item_at_start(r, h % 3), (aqr_index)r->s->n_faces + r->net->loop[2 * edge + right]);
+    if (kept_on(a, h % 3) == 0)
+      unite(r, item_at_start(a, h % 3), (aqr_index)r->s->n_faces + r->net->loop[2 * edge + right]);
   }
-}
-
-/* Unites a half-edge of a face with the one over it, where neither is cut. */
-static void unite_over(regions* r, const aqr_index* start, aqr_index h)
-{
-  aqr_index t = aqr_twin(r->s, h);
-  if (t != AQR_NONE && t < h && r->suspect[aqr_face_of(t)] && start[t] != AQR_NONE && start[h] != AQR_NONE)
-    unite(r->parent, start[h], start[t]);
 }
 
 /* Without chords and chains: one cell. */
@@ -275,46 +164,46 @@ static bool is_plain(const regions* r, aqr_index f)
   return r->lines->head[f] == AQR_NONE;
 }
 
-/* Unites what belongs together inside faces and over whole edges. Stretches of cut edges need nothing: both sides of
- * them border the same loop. `start` (one per half-edge) holds the item there, AQR_NONE on cut edges. */
-static aqr_status unite_cells(regions* r, aqr_index* start)
+/* Unites what belongs together inside a face. */
+static void unite_inside(const regions* r, const aqr_layout* a)
 {
-  const aqr_surface* s = r->s;
-  for (aqr_index f = 0; f < s->n_faces; f++)
+  for (size_t i = 0; i < a->n_marks; i++)
   {
-    if (f % 65536 == 0 && !aqr_step(r->c, 0.5 * (double)f / (double)s->n_faces))
-      return AQR_CANCELLED;
-    if (!r->suspect[f])
-      continue;
-    if (is_plain(r, f))
-    {
-      for (aqr_index h = 3 * f; h < 3 * f + 3; h++)
-      {
-        start[h] = f;
-        unite_over(r, start, h);
-      }
-      continue;
-    }
-    aqr_status status = lay_out(r, f);
-    if (status != AQR_OK)
-      return status;
-    const layout* a = &r->at;
-    for (size_t i = 0; i < a->n_marks; i++)
-    {
-      aqr_index item = a->item[a->marks[i].cell];
-      if (a->marks[i].kept)
-        unite(r->parent, item, item_after(r, &a->marks[i]));
-      if (a->marks[(i + 1) % a->n_marks].kept)
-        unite(r->parent, item, item_before(r, &a->marks[(i + 1) % a->n_marks]));
-    }
-    unite_with_chains(r);
-    for (unsigned k = 0; k < 3; k++)
-    {
-      start[3 * f + k] = kept_on(r, k) ? AQR_NONE : item_at_start(r, k);
-      unite_over(r, start, 3 * f + k);
-    }
+    aqr_index item = a->item[a->marks[i].cell];
+    if (a->marks[i].kept)
+      unite(r, item, item_after(r, &a->marks[i]));
+    if (a->marks[(i + 1) % a->n_marks].kept)
+      unite(r, item, item_before(r, &a->marks[(i + 1) % a->n_marks]));
   }
-  return AQR_OK;
+  unite_with_chains(r, a);
+  for (unsigned k = 0; k < 3; k++)
+    r->start[3 * a->face + k] = kept_on(a, k) ? AQR_NONE : item_at_start(a, k);
+}
+
+static void unite_faces(void* data, size_t begin, size_t end)
+{
+  regions* r = data;
+  aqr_small_layout room;
+  aqr_layout a = aqr_layout_in(&room);
+  for (aqr_index f = (aqr_index)begin; f < end; f++)
+    if (r->suspect[f] && is_plain(r, f))
+      r->start[3 * f] = r->start[3 * f + 1] = r->start[3 * f + 2] = f;
+    else if (r->suspect[f] && aqr_layout_face(NULL, r->s, r->lines, r->net, f, &a))
+      unite_inside(r, &a);
+    else
+      r->large[f] = r->suspect[f];
+}
+
+/* Unites over whole edges. Stretches of cut edges need nothing: both sides of them border the same loop. */
+static void unite_over(void* data, size_t begin, size_t end)
+{
+  const regions* r = data;
+  for (aqr_index h = (aqr_index)begin; h < end; h++)
+  {
+    aqr_index t = r->suspect[aqr_face_of(h)] ? aqr_twin(r->s, h) : AQR_NONE;
+    if (t != AQR_NONE && t < h && r->suspect[aqr_face_of(t)] && r->start[t] != AQR_NONE && r->start[h] != AQR_NONE)
+      unite(r, r->start[h], r->start[t]);
+  }
 }
 
 static bool on_chain(const regions* r, aqr_index point)
@@ -323,93 +212,141 @@ static bool on_chain(const regions* r, aqr_index point)
 }
 
 /* A stretch between two cells of one region. */
-static void count_stretch(regions* r, aqr_index item, bool leaves)
+static void count_stretch(const regions* r, aqr_index item, bool leaves)
 {
-  aqr_index root = find(r->parent, item);
-  r->euler[root]--;
-  r->bordered[root] |= leaves ? 4 : 0;
+  aqr_index root = find(r, item);
+  add_euler(r, root, -1);
+  if (leaves)
+    add_border(r, root, 4);
 }
 
-static void count_plain(regions* r, aqr_index f)
+static void count_plain(const regions* r, aqr_index f)
 {
   const aqr_surface* s = r->s;
-  aqr_index root = find(r->parent, f);
-  r->euler[root]++;
-  r->bordered[root] |= 2;
+  aqr_index root = find(r, f);
+  int32_t euler = 1;
+  uint8_t bordered = 2;
   for (aqr_index h = 3 * f; h < 3 * f + 3; h++)
   {
     aqr_index t = aqr_twin(s, h), v = aqr_from(s, h);
     bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
+    euler += s->fan[v] == h && !on_chain(r, v);
+    euler -= t != AQR_NONE && (t > h || leaves);
+    bordered |= leaves ? 4 : 0;
+  }
+  add_euler(r, root, euler);
+  add_border(r, root, bordered);
+}
+
+/* Cells minus stretches plus vertices. */
+static void count_cells(const regions* r, const aqr_layout* a)
+{
+  const aqr_surface* s = r->s;
+  for (size_t i = 0; i < a->n_cells; i++)
+  {
+    aqr_index root = find(r, a->item[i]);
+    add_euler(r, root, 1);
+    add_border(r, root, 2);
+  }
+  for (unsigned k = 0; k < 3; k++)
+  {
+    aqr_index h = 3 * a->face + k, t = aqr_twin(s, h), v = aqr_from(s, h);
     if (s->fan[v] == h && !on_chain(r, v))
-      r->euler[root]++;
-    if (t != AQR_NONE && (t > h || leaves))
-      count_stretch(r, f, leaves);
+      add_euler(r, find(r, item_at_start(a, k)), 1);
+    bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
+    if (t == AQR_NONE || (t < h && !leaves))
+      continue;
+    size_t first, end;
+    aqr_layout_marks_on(a, k, &first, &end);
+    count_stretch(r, a->item[aqr_layout_cell_before(a, first)], leaves);
+    for (size_t i = first; i < end; i++)
+      if (a->marks[i].kept)
+        count_stretch(r, a->item[a->marks[i].cell], leaves);
   }
 }
 
-/* Cells minus stretches plus vertices of every region. */
-static aqr_status count_euler(regions* r)
+static void count_faces(void* data, size_t begin, size_t end)
 {
-  const aqr_surface* s = r->s;
-  for (aqr_index f = 0; f < s->n_faces; f++)
-  {
-    if (f % 65536 == 0 && !aqr_step(r->c, 0.5 + 0.4 * (double)f / (double)s->n_faces))
-      return AQR_CANCELLED;
-    if (!r->suspect[f])
-      continue;
-    if (is_plain(r, f))
-    {
+  const regions* r = data;
+  aqr_small_layout room;
+  aqr_layout a = aqr_layout_in(&room);
+  for (aqr_index f = (aqr_index)begin; f < end; f++)
+    if (r->suspect[f] && is_plain(r, f))
       count_plain(r, f);
+    else if (r->suspect[f] && aqr_layout_face(NULL, r->s, r->lines, r->net, f, &a))
+      count_cells(r, &a);
+}
+
+/* What threads have no room for. */
+static aqr_status visit_large(regions* r, void (*visit)(const regions* r, const aqr_layout* a))
+{
+  for (aqr_index f = 0; f < r->s->n_faces; f++)
+  {
+    if (!r->large[f])
       continue;
-    }
-    aqr_status status = lay_out(r, f);
-    if (status != AQR_OK)
-      return status;
-    const layout* a = &r->at;
-    for (size_t i = 0; i < a->n_cells; i++)
-    {
-      aqr_index root = find(r->parent, a->item[i]);
-      r->euler[root]++;
-      r->bordered[root] |= 2;
-    }
-    for (unsigned k = 0; k < 3; k++)
-    {
-      aqr_index h = 3 * f + k, t = aqr_twin(s, h), v = aqr_from(s, h);
-      if (s->fan[v] == h && !on_chain(r, v))
-        r->euler[find(r->parent, item_at_start(r, k))]++;
-      bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
-      if (t == AQR_NONE || (t < h && !leaves))
-        continue;
-      size_t first, end;
-      marks_on(r, k, &first, &end);
-      count_stretch(r, a->item[cell_before(a, first)], leaves);
-      for (size_t i = first; i < end; i++)
-        if (a->marks[i].kept)
-          count_stretch(r, a->item[a->marks[i].cell], leaves);
-    }
+    if (!lay_out(r, f))
+      return AQR_OUT_OF_MEMORY;
+    visit(r, &r->at);
   }
-  for (size_t i = 0; i < r->net->n_loops; i++)
-    r->bordered[find(r->parent, (aqr_index)(s->n_faces + i))] |= 1;
   return AQR_OK;
+}
+
+static void begin_items(void* data, size_t begin, size_t end)
+{
+  regions* r = data;
+  for (size_t i = begin; i < end; i++)
+    atomic_init(&r->parent[i], (aqr_index)i);
+}
+
+static void mark_loops(void* data, size_t begin, size_t end)
+{
+  regions* r = data;
+  for (size_t i = begin; i < end; i++)
+    add_border(r, find(r, (aqr_index)(r->s->n_faces + i)), 1);
+}
+
+static void mark_bare(void* data, size_t begin, size_t end)
+{
+  regions* r = data;
+  for (size_t f = begin; f < end; f++)
+    if (r->suspect[f])
+      r->is_bare[f] = r->start[3 * f] != AQR_NONE && !(r->bordered[find(r, r->start[3 * f])] & 1);
+}
+
+/* Finds the regions, of each its Euler number, and components without network. */
+static aqr_status count(regions* r)
+{
+  aqr_status status = AQR_OK;
+  size_t n = r->s->n_faces;
+  AQR_TRY(aqr_parallel(r->c, r->n_items, begin_items, r, 0, 0));
+  AQR_TRY(aqr_parallel(r->c, n, unite_faces, r, 0, 0.4));
+  AQR_TRY(visit_large(r, unite_inside));
+  AQR_TRY(aqr_parallel(r->c, 3 * n, unite_over, r, 0.4, 0.5));
+  AQR_TRY(aqr_parallel(r->c, n, count_faces, r, 0.5, 0.9));
+  AQR_TRY(visit_large(r, count_cells));
+  AQR_TRY(aqr_parallel(r->c, r->net->n_loops, mark_loops, r, 0.9, 0.9));
+  AQR_TRY(aqr_parallel(r->c, n, mark_bare, r, 0.9, 0.9));
+done:
+  return status;
 }
 
 /* A region that arcs must cut. Loops that no stretch of a border belongs to lie inside one face and are disks. */
 static bool needs_cut(const regions* r, aqr_index item)
 {
-  aqr_index root = find(r->parent, item);
+  aqr_index root = find(r, item);
   return r->bordered[root] == 3 && r->euler[root] < 1;
 }
 
 /* ---- the cells of the regions to be cut ---- */
 
 /* Vertices of the graph that pieces run between: points of the surface, and both sides of the samples. */
-static aqr_index vertex_beside(const regions* r, const border_mark* m, bool after)
+static aqr_index vertex_beside(const regions* r, const aqr_border_mark* m, bool after)
 {
   bool right = m->starts == after;
   return (aqr_index)(r->s->n_points + 2 * (size_t)m->sample + right);
 }
 
-static double position_on(const regions* r, aqr_index h, const border_mark* m)
+static double position_on(const regions* r, aqr_index h, const aqr_border_mark* m)
 {
   const aqr_sample* a = &r->lines->samples[m->sample];
   return a->edge == h ? a->t : 1 - a->t;
@@ -419,7 +356,7 @@ static double position_on(const regions* r, aqr_index h, const border_mark* m)
 static double halfway(const regions* r, unsigned k, double from, bool forward)
 {
   size_t first, end;
-  marks_on(r, k, &first, &end);
+  aqr_layout_marks_on(&r->at, k, &first, &end);
   double to = forward ? 1 : 0;
   for (size_t i = first; i < end; i++)
   {
@@ -441,12 +378,12 @@ static aqr_status add_piece(regions* r, piece p)
 /* The pieces of half-edge k between its corners and kept marks. */
 static aqr_status add_pieces_on(regions* r, unsigned k, aqr_index first_cell)
 {
-  const layout* a = &r->at;
+  const aqr_layout* a = &r->at;
   const aqr_surface* s = r->s;
   aqr_index h = 3 * a->face + k;
   size_t first, end;
-  marks_on(r, k, &first, &end);
-  piece p = { .cell = first_cell + cell_before(a, first),
+  aqr_layout_marks_on(&r->at, k, &first, &end);
+  piece p = { .cell = first_cell + aqr_layout_cell_before(a, first),
     .half_edge = h,
     .from = aqr_from(s, h),
     .is_contact = aqr_twin(s, h) == AQR_NONE };
@@ -472,17 +409,17 @@ static aqr_status add_pieces_on(regions* r, unsigned k, aqr_index first_cell)
  * begins. An arc leaves over such a contact just past the mark, so that it crosses the mark's chord. */
 static aqr_status add_contacts(regions* r, aqr_index first_cell)
 {
-  const layout* a = &r->at;
+  const aqr_layout* a = &r->at;
   for (size_t i = 0; i < a->n_marks; i++)
   {
     if (!a->marks[i].kept)
       continue;
-    unsigned cell = cell_before(a, i);
+    unsigned cell = aqr_layout_cell_before(a, i);
     size_t next = i;
     do
       next = (next + 1) % a->n_marks;
     while (next != i && !(a->marks[next].kept && a->marks[next].cell == cell));
-    aqr_index h = aqr_sample_half_edge(r->s, &r->lines->samples[a->marks[i].sample], a->face);
+    aqr_index h = a->marks[i].half_edge;
     piece p = { .cell = first_cell + cell,
       .half_edge = h,
       .from = vertex_beside(r, &a->marks[i], false),
@@ -497,7 +434,7 @@ static aqr_status add_contacts(regions* r, aqr_index first_cell)
   return AQR_OK;
 }
 
-static void move_sample(regions* r, const border_mark* m, double t)
+static void move_sample(regions* r, const aqr_border_mark* m, double t)
 {
   aqr_lines* l = r->lines;
   const aqr_line* line = &l->lines[m->line];
@@ -519,11 +456,11 @@ static void move_sample(regions* r, const border_mark* m, double t)
 static void part_marks(regions* r, unsigned k)
 {
   size_t first, end, n;
-  marks_on(r, k, &first, &end);
+  aqr_layout_marks_on(&r->at, k, &first, &end);
   n = end - first;
   if (n < 2)
     return;
-  const border_mark* m = r->at.marks;
+  const aqr_border_mark* m = r->at.marks;
   bool along = r->lines->samples[m[first].sample].edge == 3 * r->at.face + k;
   for (size_t i = 0, j; i < n; i = j)
   {
@@ -553,9 +490,8 @@ static aqr_status list_cells(regions* r)
     r->slot[f] = AQR_NONE;
     if (!r->suspect[f] || (is_plain(r, f) && !needs_cut(r, f)))
       continue;
-    aqr_status status = lay_out(r, f);
-    if (status != AQR_OK)
-      return status;
+    if (!lay_out(r, f))
+      return AQR_OUT_OF_MEMORY;
     bool any = false;
     for (size_t i = 0; i < r->at.n_cells; i++)
       any |= needs_cut(r, r->at.item[i]);
@@ -574,12 +510,12 @@ static aqr_status list_cells(regions* r)
     for (unsigned k = 0; k < 3; k++)
     {
       at->first[k] = (aqr_index)r->n_pieces;
-      status = add_pieces_on(r, k, first_cell);
+      aqr_status status = add_pieces_on(r, k, first_cell);
       if (status != AQR_OK)
         return status;
     }
     at->first[3] = (aqr_index)r->n_pieces;
-    status = add_contacts(r, first_cell);
+    aqr_status status = add_contacts(r, first_cell);
     if (status != AQR_OK)
       return status;
     at->end = (aqr_index)r->n_pieces;
@@ -877,25 +813,21 @@ done:
 aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, const aqr_network* net,
   aqr_lines* lines, uint8_t* is_bare, uint8_t* suspect, bool cut, size_t* added)
 {
-  regions r = { .c = c, .s = s, .chains = chains, .net = net, .lines = lines, .suspect = suspect };
+  regions r = { .c = c, .s = s, .chains = chains, .net = net, .lines = lines, .suspect = suspect, .is_bare = is_bare };
   aqr_status status = AQR_OK;
   *added = 0;
   r.n_items = s->n_faces + net->n_loops;
-  aqr_index* start = AQR_NEW(c, aqr_index, 3 * s->n_faces);
-  r.parent = AQR_NEW(c, aqr_index, r.n_items);
-  r.euler = AQR_NEW0(c, int32_t, r.n_items);
-  r.bordered = AQR_NEW0(c, uint8_t, r.n_items);
+  r.start = AQR_NEW(c, aqr_index, 3 * s->n_faces);
+  r.parent = AQR_NEW(c, _Atomic(aqr_index), r.n_items);
+  r.euler = AQR_NEW0(c, _Atomic(int32_t), r.n_items);
+  r.bordered = AQR_NEW0(c, _Atomic(uint8_t), r.n_items);
+  r.large = AQR_NEW0(c, uint8_t, s->n_faces);
   r.slot = AQR_NEW(c, aqr_index, s->n_faces);
-  AQR_REQUIRE(start && r.parent && r.euler && r.bordered && r.slot, AQR_OUT_OF_MEMORY);
-  for (size_t i = 0; i < r.n_items; i++)
-    r.parent[i] = (aqr_index)i;
-  AQR_TRY(unite_cells(&r, start));
-  AQR_TRY(count_euler(&r));
-  for (aqr_index f = 0; f < s->n_faces; f++)
-    is_bare[f] = !suspect[f] ? is_bare[f] : start[3 * f] != AQR_NONE && !(r.bordered[find(r.parent, start[3 * f])] & 1);
+  AQR_REQUIRE(r.start && r.parent && r.euler && r.bordered && r.large && r.slot, AQR_OUT_OF_MEMORY);
+  AQR_TRY(count(&r));
   bool any = false;
   for (aqr_index i = 0; cut && i < r.n_items && !any; i++)
-    any = r.parent[i] == i && needs_cut(&r, i);
+    any = above(&r, i) == i && needs_cut(&r, i);
   if (any)
   {
     AQR_TRY(list_cells(&r));
@@ -905,7 +837,8 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
       suspect[f] = r.slot[f] != AQR_NONE;
   }
 done:
-  AQR_DROP(c, start, 3 * s->n_faces);
+  AQR_DROP(c, r.start, 3 * s->n_faces);
+  AQR_DROP(c, r.large, s->n_faces);
   AQR_DROP(c, r.parent, r.n_items);
   AQR_DROP(c, r.euler, r.n_items);
   AQR_DROP(c, r.bordered, r.n_items);
@@ -916,9 +849,6 @@ done:
   AQR_DROP(c, r.queue, r.queue_capacity);
   AQR_DROP(c, r.drawn, r.drawn_capacity);
   AQR_DROP(c, r.arcs, r.arc_capacity);
-  AQR_DROP(c, r.at.marks, r.at.capacity);
-  AQR_DROP(c, r.at.signature, r.at.signature_capacity);
-  AQR_DROP(c, r.at.item, r.at.item_capacity);
-  AQR_DROP(c, r.at.group, r.at.group_capacity);
+  aqr_layout_free(c, &r.at);
   return status;
 }

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Paper 5: intersections per face. */
+#include "crossings.h"
+
+typedef struct finder
+{
+  aqr_context* c;
+  const aqr_surface* s;
+  const aqr_lines* l;
+  aqr_network* net;
+  aqr_crossing_order* order;
+} finder;
+
+static aqr_status find(finder* b)
+{
+  const aqr_surface* s = b->s;
+  const aqr_lines* l = b->l;
+  aqr_network* net = b->net;
+  for (aqr_index f = 0; f < s->n_faces; f++)
+  {
+    if (f % 65536 == 0 && !aqr_step(b->c, 0.2 * (double)f / (double)s->n_faces))
+      return AQR_CANCELLED;
+    for (aqr_index i = l->head[f]; i != AQR_NONE; i = l->segments[i].next)
+    {
+      aqr_index p = l->segments[i].sample;
+      if (l->lines[l->segments[i].line].is_chain)
+        continue;
+      for (aqr_index j = l->segments[i].next; j != AQR_NONE; j = l->segments[j].next)
+      {
+        aqr_index q = l->segments[j].sample;
+        if (l->lines[l->segments[j].line].is_chain)
+          continue;
+        int turn = aqr_chords_cross(s, f, &l->samples[p], &l->samples[p + 1], &l->samples[q], &l->samples[q + 1]);
+        if (!turn)
+          continue;
+        if (!AQR_RESERVE(b->c, net->crossings, net->crossing_capacity, net->n_crossings + 1))
+          return AQR_OUT_OF_MEMORY;
+        net->crossings[net->n_crossings++] = (aqr_crossing){ { p, q }, { l->segments[i].line, l->segments[j].line },
+          { AQR_NONE, AQR_NONE }, { AQR_NONE, AQR_NONE }, (int8_t)turn, true };
+      }
+    }
+  }
+  return net->n_crossings < AQR_NONE / 8 ? AQR_OK : AQR_TOO_LARGE;
+}
+
+static aqr_status list_by_chord(finder* b)
+{
+  const aqr_network* net = b->net;
+  aqr_crossing_order* o = b->order;
+  size_t n = b->l->n_samples;
+  o->n_samples = n;
+  o->n_on = 2 * net->n_crossings;
+  o->first = AQR_NEW0(b->c, size_t, n + 2);
+  o->on = AQR_NEW(b->c, aqr_index, o->n_on);
+  if (!o->first || !o->on)
+    return AQR_OUT_OF_MEMORY;
+  for (size_t i = 0; i < net->n_crossings; i++)
+    for (unsigned k = 0; k < 2; k++)
+      o->first[net->crossings[i].chord[k] + 2]++;
+  for (size_t i = 0; i < n; i++)
+    o->first[i + 2] += o->first[i + 1];
+  for (size_t i = 0; i < net->n_crossings; i++)
+    for (unsigned k = 0; k < 2; k++)
+      o->on[o->first[net->crossings[i].chord[k] + 1]++] = (aqr_index)i;
+  return AQR_OK;
+}
+
+/* Whether x's other chord runs from the right of `chord` to its left (1) or from its left (-1). */
+static int turn_on(const aqr_crossing* x, aqr_index chord)
+{
+  return aqr_side_of(x, chord) == 0 ? x->turn : -x->turn;
+}
+
+/* Twice as many places as are told apart along an edge where three chords nearly meet. Large enough for the order of
+ * crossings to be the true one wherever it can be seen, small enough for 64 bits. */
+#define AQR_PLACES ((int64_t)1 << 15)
+#define AQR_HALF_WORD ((int64_t)1 << 31)
+
+/* A chord's end in barycentric coordinates of its face, times AQR_PLACES; or how these change as it moves along the
+ * face's border. Never at a corner, so that ends on two sides differ. */
+static void end_at(const finder* b, aqr_index f, const aqr_sample* a, bool moving, int64_t w[3])
+{
+  aqr_index h = aqr_sample_half_edge(b->s, a, f), k = h % 3;
+  int64_t t = 2 * (int64_t)(a->t * (double)(AQR_PLACES >> 1)) + 1;
+  if (t >= AQR_PLACES)
+    t = AQR_PLACES - 1;
+  if (h != a->edge)
+    t = AQR_PLACES - t;
+  w[k] = moving ? -1 : AQR_PLACES - t;
+  w[(k + 1) % 3] = moving ? 1 : t;
+  w[(k + 2) % 3] = 0;
+}
+
+static void cross(const int64_t a[3], const int64_t b[3], int64_t c[3])
+{
+  for (unsigned i = 0; i < 3; i++)
+    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+/* The sign of the determinant of three lines, exact: their numbers are below 2^30, those of the product of two below
+ * 2^61, which is taken in two halves. */
+static int determinant(int64_t line[3][3])
+{
+  int64_t m[3], high = 0, low = 0;
+  cross(line[1], line[2], m);
+  for (unsigned i = 0; i < 3; i++)
+  {
+    high += line[0][i] * (m[i] / AQR_HALF_WORD);
+    low += line[0][i] * (m[i] % AQR_HALF_WORD);
+  }
+  high += low / AQR_HALF_WORD;
+  low %= AQR_HALF_WORD;
+  return high ? (high > 0 ? 1 : -1) : (low > 0) - (low < 0);
+}
+
+/* Orientation of three chords of face f that cross each other pairwise: the sign of the determinant of their lines.
+ *
+ * The orders of crossings that follow along the chords must be those of some straight lines, or the loops around these
+ * crossings would close no disks. So the sign is exact, and where the three lines meet in one point each end counts as
+ * moved a little along the border, ends farther along infinitely more than those before them: that keeps the order of
+ * ends along the border, which decides who crosses whom, also where chords coincide. The sign is then that of the first
+ * derivative that does not vanish. */
+static int triple(const finder* b, aqr_index f, aqr_index a, aqr_index p, aqr_index q)
+{
+  const aqr_sample* m = b->l->samples;
+  const aqr_sample* end[6] = { &m[a], &m[a + 1], &m[p], &m[p + 1], &m[q], &m[q + 1] };
+  unsigned rank[6] = { 0 }; /* 0: the farthest along the border */
+  for (unsigned moved = 0; moved < 64; moved++)
+  {
+    int64_t line[3][3], w[2][3];
+    for (unsigned i = 0; moved == 1 && i < 6; i++)
+      for (unsigned j = 0; j < 6; j++)
+        rank[i] += aqr_border_before(b->s, f, end[i], end[j]);
+    for (unsigned i = 0; i < 3; i++)
+    {
+      for (unsigned k = 0; k < 2; k++)
+        end_at(b, f, end[2 * i + k], moved >> rank[2 * i + k] & 1, w[k]);
+      cross(w[0], w[1], line[i]);
+    }
+    int sign = determinant(line);
+    if (sign)
+      return sign;
+  }
+  return 1; /* not reached: no chord begins and ends on one edge */
+}
+
+/* Whether crossing x comes before crossing y along chord a. */
+static bool comes_before(const finder* b, aqr_index a, aqr_index x, aqr_index y)
+{
+  const aqr_crossing *cx = &b->net->crossings[x], *cy = &b->net->crossings[y];
+  aqr_index p = cx->chord[!aqr_side_of(cx, a)], q = cy->chord[!aqr_side_of(cy, a)], f = b->l->samples[a].face;
+  const aqr_sample* m = b->l->samples;
+  if (aqr_chords_cross(b->s, f, &m[p], &m[p + 1], &m[q], &m[q + 1]))
+    return triple(b, f, a, p, q) * turn_on(cx, a) * turn_on(cy, a) > 0;
+  /* p and q do not cross, so q lies whole on one side of p: on that of a's start or on that of its end */
+  bool wraps = aqr_border_before(b->s, f, &m[p + 1], &m[p]);
+  const aqr_sample *low = wraps ? &m[p + 1] : &m[p], *high = wraps ? &m[p] : &m[p + 1];
+  bool start = aqr_border_before(b->s, f, low, &m[a]) && aqr_border_before(b->s, f, &m[a], high);
+  bool other = aqr_border_before(b->s, f, low, &m[q]) && aqr_border_before(b->s, f, &m[q], high);
+  return start != other;
+}
+
+static void order_along_chords(void* data, size_t begin, size_t end)
+{
+  const finder* b = data;
+  const aqr_crossing_order* o = b->order;
+  for (size_t a = begin; a < end; a++)
+    for (size_t i = o->first[a]; i < o->first[a + 1]; i++)
+      for (size_t j = i; j > o->first[a] && comes_before(b, (aqr_index)a, o->on[j], o->on[j - 1]); j--)
+      {
+        aqr_index swap = o->on[j];
+        o->on[j] = o->on[j - 1];
+        o->on[j - 1] = swap;
+      }
+}
+
+aqr_status aqr_crossings_find(
+  aqr_context* c, const aqr_surface* s, const aqr_lines* lines, aqr_network* net, aqr_crossing_order* order)
+{
+  finder b = { c, s, lines, net, order };
+  aqr_status status = AQR_OK;
+  AQR_TRY(find(&b));
+  AQR_TRY(list_by_chord(&b));
+  AQR_TRY(aqr_parallel(c, lines->n_samples, order_along_chords, &b, 0.2, 0.3));
+done:
+  return status;
+}
+
+void aqr_crossing_order_free(aqr_context* c, aqr_crossing_order* order)
+{
+  AQR_DROP(c, order->first, order->n_samples + 2);
+  AQR_DROP(c, order->on, order->n_on);
+}
