@@ -324,8 +324,11 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
     AQR_TRY(redraw_all(c, m, largest));
     AQR_TRY(partition_all(c, m, options));
   }
+  AQR_REQUIRE(aqr_step(c, 0.9), AQR_CANCELLED);
   AQR_TRY(aqr_regularize(c, m));
+  AQR_REQUIRE(aqr_step(c, 0.95), AQR_CANCELLED);
   AQR_REQUIRE(aqr_pm_is_consistent(m) && aqr_pm_is_regular(m), AQR_INTERNAL);
+  AQR_REQUIRE(aqr_step(c, 0.98), AQR_CANCELLED);
   AQR_TRY(aqr_pm_compact(c, m));
 done:
   return status;

@@ -309,7 +309,9 @@ aqr_status aqr_regularize(aqr_context* c, aqr_polygon_mesh* m)
 {
   aqr_status status = AQR_OK;
   AQR_TRY(split_parallel_edges(c, m));
+  AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
   AQR_TRY(part_repeats(c, m));
+  AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
   AQR_TRY(part_duplicates(c, m));
 done:
   return status;

@@ -127,12 +127,57 @@ void aqr_results_free_mesh(aqr_remesher* r)
   memset(m, 0, sizeof *m);
 }
 
+typedef struct field_job
+{
+  const aqr_surface* s;
+  const aqr_field* field;
+  const aqr_index *point_rank, *face_rank;
+  double *points, *normals, *min_direction, *max_direction, *min_curvature, *max_curvature;
+  float *point_confidence, *confidence;
+  aqr_origin* origins;
+  aqr_index *triangles, *source;
+} field_job;
+
+/* The first sector of a point speaks for it: sectors split off come behind all cleaned points. */
+static void show_points(void* data, size_t begin, size_t end)
+{
+  const field_job* j = data;
+  const aqr_surface* s = j->s;
+  for (size_t v = begin; v < end; v++)
+  {
+    size_t i = j->point_rank[v];
+    vec3 normal = v3_load(j->field->normal + 3 * v), d = v3_load(j->field->min_direction + 3 * v);
+    unscale(s, aqr_point(s, (aqr_index)v), j->points + 3 * i);
+    v3_store(j->normals + 3 * i, normal);
+    v3_store(j->min_direction + 3 * i, d);
+    v3_store(j->max_direction + 3 * i, v3_cross(normal, d));
+    j->min_curvature[i] = j->field->k_min[v] / s->diagonal;
+    j->max_curvature[i] = j->field->k_max[v] / s->diagonal;
+    j->point_confidence[i] = j->field->point_confidence[v];
+    j->origins[i] = s->origin[v];
+  }
+}
+
+static void show_triangles(void* data, size_t begin, size_t end)
+{
+  const field_job* j = data;
+  const aqr_surface* s = j->s;
+  for (size_t f = begin; f < end; f++)
+  {
+    size_t i = j->face_rank[f];
+    j->source[i] = s->source[f];
+    j->confidence[i] = j->field->face_confidence[f];
+    for (unsigned k = 0; k < 3; k++)
+      j->triangles[3 * i + k] = j->point_rank[s->clean[s->corner[3 * f + k]]];
+  }
+}
+
 aqr_status aqr_results_field(aqr_remesher* r)
 {
   aqr_context* c = &r->context;
   const aqr_surface* s = r->surface;
-  const aqr_field* field = &r->field;
   aqr_status status = AQR_OK;
+  field_job job;
   aqr_index *point_rank = NULL, *face_rank = NULL;
   aqr_results_free_field(r);
   size_t n = s->n_clean, nf = s->n_faces;
@@ -150,30 +195,14 @@ aqr_status aqr_results_field(aqr_remesher* r)
   point_rank = AQR_NEW(c, aqr_index, n);
   face_rank = AQR_NEW(c, aqr_index, nf);
   AQR_REQUIRE(point_rank && face_rank, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(aqr_step(c, 0.1), AQR_CANCELLED);
   AQR_TRY(aqr_surface_rank_points(c, s, r->n_input_points, point_rank));
+  AQR_REQUIRE(aqr_step(c, 0.2), AQR_CANCELLED);
   AQR_TRY(aqr_surface_rank_faces(c, s, face_rank));
-  for (size_t v = s->n_points; v-- > 0;) /* backwards, so that the first sector of a point speaks for it */
-  {
-    size_t i = point_rank[s->clean[v]];
-    vec3 normal = v3_load(field->normal + 3 * v), d = v3_load(field->min_direction + 3 * v);
-    unscale(s, aqr_point(s, (aqr_index)v), points + 3 * i);
-    v3_store(normals + 3 * i, normal);
-    v3_store(min_direction + 3 * i, d);
-    v3_store(max_direction + 3 * i, v3_cross(normal, d));
-    min_curvature[i] = field->k_min[v] / s->diagonal;
-    max_curvature[i] = field->k_max[v] / s->diagonal;
-    point_confidence[i] = field->point_confidence[v];
-  }
-  for (size_t i = 0; i < n; i++)
-    origins[point_rank[i]] = s->origin[i];
-  for (size_t f = 0; f < nf; f++)
-  {
-    size_t i = face_rank[f];
-    source[i] = s->source[f];
-    confidence[i] = field->face_confidence[f];
-    for (unsigned k = 0; k < 3; k++)
-      triangles[3 * i + k] = point_rank[s->clean[s->corner[3 * f + k]]];
-  }
+  job = (field_job){ s, &r->field, point_rank, face_rank, points, normals, min_direction, max_direction, min_curvature,
+    max_curvature, point_confidence, confidence, origins, triangles, source };
+  AQR_TRY(aqr_parallel(c, n, show_points, &job, 0.3, 0.6));
+  AQR_TRY(aqr_parallel(c, nf, show_triangles, &job, 0.6, 1));
 done:
   AQR_DROP(c, point_rank, n);
   AQR_DROP(c, face_rank, nf);
@@ -213,11 +242,46 @@ static double curvature_across(const aqr_remesher* r, aqr_index f, vec3 p, vec3 
   return (r->field.k_max[v] * along + r->field.k_min[v] * (1 - along)) / s->diagonal;
 }
 
+typedef struct lines_job
+{
+  const aqr_remesher* r;
+  const aqr_index* face_rank;
+  uint8_t *type, *ends, *isotropic;
+  double *points, *curvature, *arc;
+  aqr_index* triangle;
+} lines_job;
+
+static void show_some_lines(void* data, size_t begin, size_t end)
+{
+  const lines_job* x = data;
+  const aqr_surface* s = x->r->surface;
+  const aqr_lines* l = &x->r->lines;
+  for (size_t i = begin; i < end; i++)
+  {
+    const aqr_line* line = &l->lines[i];
+    x->type[i] = line->type;
+    x->ends[2 * i] = line->ends[0];
+    x->ends[2 * i + 1] = line->ends[1];
+    for (size_t k = 0; k < line->count; k++)
+    {
+      size_t j = line->first + k, to = k + 1 < line->count ? j : j - 1;
+      const aqr_sample* a = &l->samples[j];
+      vec3 d = v3_sub(l->samples[to + 1].p, l->samples[to].p);
+      unscale(s, a->p, x->points + 3 * j);
+      x->curvature[j] = curvature_across(x->r, a->face, a->p, d);
+      x->arc[j] = (double)a->arc * s->diagonal;
+      x->triangle[j] = x->face_rank[a->face];
+      x->isotropic[j] = a->isotropic;
+    }
+  }
+}
+
 aqr_status aqr_results_lines(aqr_remesher* r)
 {
   aqr_context* c = &r->context;
   const aqr_lines* l = &r->lines;
   aqr_status status = AQR_OK;
+  lines_job job;
   aqr_results_free_lines(r);
   size_t n = l->n_lines, m = l->n_samples;
   int64_t* offsets = AQR_NEW(c, int64_t, n + 1);
@@ -228,27 +292,13 @@ aqr_status aqr_results_lines(aqr_remesher* r)
   r->lines_view = (aqr_lines_view){ n, offsets, type, ends, m, points, curvature, arc, triangle, isotropic };
   AQR_REQUIRE(
     offsets && type && ends && isotropic && points && curvature && arc && triangle && face_rank, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(aqr_step(c, 1), AQR_CANCELLED);
   AQR_TRY(aqr_surface_rank_faces(c, r->surface, face_rank));
   offsets[0] = 0;
   for (size_t i = 0; i < n; i++)
-  {
-    const aqr_line* line = &l->lines[i];
-    offsets[i + 1] = offsets[i] + (int64_t)line->count;
-    type[i] = line->type;
-    ends[2 * i] = line->ends[0];
-    ends[2 * i + 1] = line->ends[1];
-    for (size_t k = 0; k < line->count; k++)
-    {
-      size_t j = line->first + k, to = k + 1 < line->count ? j : j - 1;
-      const aqr_sample* a = &l->samples[j];
-      vec3 d = v3_sub(l->samples[to + 1].p, l->samples[to].p);
-      unscale(r->surface, a->p, points + 3 * j);
-      curvature[j] = curvature_across(r, a->face, a->p, d);
-      arc[j] = (double)a->arc * r->surface->diagonal;
-      triangle[j] = face_rank[a->face];
-      isotropic[j] = a->isotropic;
-    }
-  }
+    offsets[i + 1] = offsets[i] + (int64_t)l->lines[i].count;
+  job = (lines_job){ r, face_rank, type, ends, isotropic, points, curvature, arc, triangle };
+  AQR_TRY(aqr_parallel(c, n, show_some_lines, &job, 1, 1));
 done:
   AQR_DROP(c, face_rank, r->surface->n_faces);
   if (status != AQR_OK)

@@ -182,6 +182,7 @@ static aqr_status place_points(builder* b)
       id[i] = (aqr_index)n++;
   AQR_REQUIRE(aqr_surface_reserve_points(b->c, s, n) && aqr_surface_reserve_origins(b->c, s, n), AQR_OUT_OF_MEMORY);
   s->n_points = n;
+  AQR_REQUIRE(aqr_step(b->c, 0.23), AQR_CANCELLED);
   double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
   for (size_t i = 0; i < n_in; i++)
   {
@@ -196,6 +197,7 @@ static aqr_status place_points(builder* b)
       high[k] = fmax(high[k], p[k]);
     }
   }
+  AQR_REQUIRE(aqr_step(b->c, 0.25), AQR_CANCELLED);
   for (size_t i = 0; i < 3 * s->n_faces; i++)
   {
     s->corner[i] = id[s->corner[i]];
@@ -205,6 +207,7 @@ static aqr_status place_points(builder* b)
   s->centre = v3(low[0] / 2 + high[0] / 2, low[1] / 2 + high[1] / 2, low[2] / 2 + high[2] / 2);
   s->diagonal = 2 * hypot(hypot(high[0] / 2 - low[0] / 2, high[1] / 2 - low[1] / 2), high[2] / 2 - low[2] / 2);
   AQR_REQUIRE(s->diagonal > 0 && isfinite(s->diagonal), AQR_DEGENERATE_INPUT);
+  AQR_REQUIRE(aqr_step(b->c, 0.28), AQR_CANCELLED);
   double area = 0;
   for (size_t i = 0; i < n; i++)
   {
@@ -231,6 +234,7 @@ static aqr_status pair_half_edges(builder* b)
   size_t* first = AQR_NEW0(b->c, size_t, s->n_points + 2);
   aqr_index* in_bucket = AQR_NEW(b->c, aqr_index, n);
   AQR_REQUIRE(first && in_bucket, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(aqr_step(b->c, 0.38), AQR_CANCELLED);
   for (aqr_index h = 0; h < n; h++)
   {
     aqr_index p = aqr_from(s, h), q = aqr_to(s, h);
@@ -239,6 +243,7 @@ static aqr_status pair_half_edges(builder* b)
   }
   for (size_t i = 1; i <= s->n_points; i++)
     first[i + 1] += first[i];
+  AQR_REQUIRE(aqr_step(b->c, 0.39), AQR_CANCELLED);
   for (aqr_index h = 0; h < n; h++)
   {
     aqr_index p = aqr_from(s, h), q = aqr_to(s, h);

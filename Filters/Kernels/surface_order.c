@@ -36,12 +36,14 @@ typedef struct keyed
 } keyed;
 
 /* Stable radix sort; the passes go to and fro between the two arrays and end in `b`. */
-static void sort_by_key(keyed* a, keyed* b, size_t n)
+static aqr_status sort_by_key(aqr_context* c, keyed* a, keyed* b, size_t n)
 {
   for (unsigned pass = 0; pass < passes; pass++)
   {
     size_t start[digits + 1] = { 0 };
     unsigned shift = pass * digit_bits;
+    if (!aqr_step(c, 0.3))
+      return AQR_CANCELLED;
     for (size_t i = 0; i < n; i++)
       start[(a[i].key >> shift & (digits - 1)) + 1]++;
     for (unsigned d = 0; d < digits; d++)
@@ -52,6 +54,7 @@ static void sort_by_key(keyed* a, keyed* b, size_t n)
     a = b;
     b = swap;
   }
+  return AQR_OK;
 }
 
 /* Moves the faces to the order given and numbers the points as the faces come to them. */
@@ -67,6 +70,8 @@ static aqr_status renumber(aqr_context* c, aqr_surface* s, const keyed* order)
   memset(id, 0xff, n_points * sizeof *id);
   for (size_t i = 0; i < n; i++)
   {
+    if (i % 65536 == 0)
+      AQR_REQUIRE(aqr_step(c, 0.35), AQR_CANCELLED);
     size_t f = order[i].face;
     to.source[i] = s->source[f];
     for (unsigned k = 0; k < 3; k++)
@@ -101,8 +106,7 @@ aqr_status aqr_surface_arrange(aqr_context* c, aqr_surface* s)
   AQR_REQUIRE(order && spare, AQR_OUT_OF_MEMORY);
   for (size_t f = 0; f < n; f++)
     order[f] = (keyed){ morton(aqr_point(s, s->corner[3 * f])), (aqr_index)f };
-  AQR_REQUIRE(aqr_step(c, 0.3), AQR_CANCELLED);
-  sort_by_key(order, spare, n);
+  AQR_TRY(sort_by_key(c, order, spare, n));
   AQR_DROP(c, order, n);
   AQR_TRY(renumber(c, s, spare));
 done:
