@@ -34,9 +34,11 @@ typedef struct slot
 {
   aqr_index* queue;
   size_t room;
-  uint8_t* inside;  /* a bit per point, all clear between balls */
-  size_t next, end; /* of the centres; next < end when a ball did not fit into the queue */
+  uint8_t* inside;         /* a bit per point, all clear between balls */
+  size_t begin, next, end; /* of the centres; next < end when a ball did not fit into the queue, or its disk */
   size_t visited;
+  aqr_index* near; /* for each centre the number of points that its ball is blended into, and these */
+  size_t n_near, near_room;
 } slot;
 
 typedef enum point_state
@@ -337,6 +339,48 @@ static void store_mean(double* t, const ball* b)
     memset(t, 0, 6 * sizeof *t);
 }
 
+/* The points within a distance of v, reached over edges, into the queue; false when they do not fit. */
+static bool disk(const job* j, slot* k, aqr_index v, double radius, size_t* n)
+{
+  const aqr_surface* s = j->s;
+  ball b = { .centre = aqr_point(j->s, v), .radius2 = radius * radius };
+  *n = 0;
+  bool fits = visit(k, n, v);
+  for (size_t i = 0; fits && i < *n; i++)
+    for (aqr_index first = s->fan[k->queue[i]], h = first; fits && h != AQR_NONE;)
+    {
+      aqr_index next = aqr_next_around(s, h), to = aqr_to(s, h), last = aqr_from(s, aqr_prev(h));
+      if (holds(&b, aqr_point(s, to)))
+        fits = visit(k, n, to);
+      if (fits && next == AQR_NONE && holds(&b, aqr_point(s, last)))
+        fits = visit(k, n, last);
+      h = next;
+      if (h == first)
+        break;
+    }
+  for (size_t i = 0; i < *n; i++)
+    k->inside[k->queue[i] >> 3] = 0;
+  return fits;
+}
+
+/* Lists the points that have no ball and are near to that of v, if it is a shared one. */
+static bool list_near(const job* j, slot* k, aqr_index v)
+{
+  double radius = radius_at(j, v);
+  size_t n = 0, kept = 0;
+  if (j->covered[v] == shared_ball && !disk(j, k, v, reach * radius, &n))
+    return false;
+  if (k->near_room - k->n_near < n + 1)
+    return false;
+  aqr_index* near = k->near + k->n_near;
+  for (size_t i = 0; i < n; i++)
+    if (j->covered[k->queue[i]] == blended && may_stand_in(j, radius, k->queue[i]))
+      near[++kept] = k->queue[i];
+  near[0] = (aqr_index)kept;
+  k->n_near += 1 + kept;
+  return true;
+}
+
 static void run_slots(void* data, size_t begin, size_t end)
 {
   job* j = data;
@@ -349,6 +393,8 @@ static void run_slots(void* data, size_t begin, size_t end)
       if (!grow(j, k, v, &b))
         break;
       store_mean(j->t + 6 * (size_t)v, &b);
+      if (!list_near(j, k, v))
+        break;
     }
 }
 
@@ -367,15 +413,42 @@ static aqr_status run_batch(aqr_context* c, job* j)
       if (k->next < k->end)
       {
         again = true;
-        if (!AQR_RESERVE(c, k->queue, k->room, 2 * k->room))
+        if (!AQR_RESERVE(c, k->queue, k->room, 2 * k->room) || !AQR_RESERVE(c, k->near, k->near_room, 2 * k->near_room))
           return AQR_OUT_OF_MEMORY;
       }
   }
   return AQR_OK;
 }
 
-/* Balls differ in size by orders of magnitude, so the length of a batch follows what the last one
- * took; it decides nothing but how often the progress hook is asked. */
+/* Adds the balls of a slot to the points near them. */
+static void blend(job* j, const slot* k)
+{
+  const aqr_index* near = k->near;
+  for (size_t i = k->begin; i < k->end; i++)
+  {
+    aqr_index v = j->centres[i], n = *near++;
+    double limit = reach * radius_at(j, v);
+    for (; n > 0; n--)
+    {
+      aqr_index w = *near++;
+      double x = 1 - v3_norm2(v3_sub(aqr_point(j->s, w), aqr_point(j->s, v))) / (limit * limit);
+      j->weight[w] += x * x;
+      for (size_t a = 0; a < 6; a++)
+        j->t[6 * (size_t)w + a] += x * x * j->t[6 * (size_t)v + a];
+    }
+  }
+}
+
+static void divide(void* data, size_t begin, size_t end)
+{
+  job* j = data;
+  for (size_t v = begin; v < end; v++)
+    for (size_t a = 0; a < 6 && j->covered[v] == blended; a++)
+      j->t[6 * v + a] /= j->weight[v];
+}
+
+/* Fills the balls and blends them in their order. They differ in size by orders of magnitude, so the length of a batch
+ * follows what the last one took; it decides nothing but how often the progress hook is asked. */
 static aqr_status fill_balls(aqr_context* c, job* j, double from, double to)
 {
   aqr_status status = AQR_OK;
@@ -387,44 +460,20 @@ static aqr_status fill_balls(aqr_context* c, job* j, double from, double to)
     size_t each = (last - next + slots - 1) / slots;
     for (slot* k = j->slot; k < j->slot + slots; k++)
     {
-      k->visited = 0;
-      k->next = next;
+      k->visited = k->n_near = 0;
+      k->begin = k->next = next;
       next = k->end = last - next < each ? last : next + each;
     }
     AQR_TRY(run_batch(c, j));
     for (slot* k = j->slot; k < j->slot + slots; k++)
+    {
       visited += k->visited;
+      blend(j, k);
+    }
     double wanted = (double)count * batch_work / (double)visited;
     count = wanted < 1 ? 1 : wanted > 4 * (double)count ? 4 * count : (size_t)wanted;
   }
 done:
-  return status;
-}
-
-/* The points within a distance of v, reached over edges, into the queue of k. */
-static aqr_status disk(aqr_context* c, const job* j, slot* k, aqr_index v, double radius, size_t* n)
-{
-  const aqr_surface* s = j->s;
-  ball b = { .centre = aqr_point(j->s, v), .radius2 = radius * radius };
-  aqr_status status = AQR_OK;
-  *n = 0;
-  visit(k, n, v);
-  for (size_t i = 0; i < *n; i++)
-    for (aqr_index first = s->fan[k->queue[i]], h = first; h != AQR_NONE;)
-    {
-      aqr_index next = aqr_next_around(s, h), to = aqr_to(s, h), last = aqr_from(s, aqr_prev(h));
-      AQR_REQUIRE(AQR_RESERVE(c, k->queue, k->room, *n + 2), AQR_OUT_OF_MEMORY);
-      if (holds(&b, aqr_point(s, to)))
-        visit(k, n, to);
-      if (next == AQR_NONE && holds(&b, aqr_point(s, last)))
-        visit(k, n, last);
-      h = next;
-      if (h == first)
-        break;
-    }
-done:
-  for (size_t i = 0; i < *n; i++)
-    k->inside[k->queue[i] >> 3] = 0;
   return status;
 }
 
@@ -454,7 +503,8 @@ static aqr_status choose_centres(aqr_context* c, job* j, double from, double to)
     j->centres[j->n_centres++] = v;
     if (j->covered[v] == own_ball)
       continue;
-    AQR_TRY(disk(c, j, j->slot, v, spacing * radius, &n));
+    while (!disk(j, j->slot, v, spacing * radius, &n))
+      AQR_REQUIRE(AQR_RESERVE(c, j->slot->queue, j->slot->room, 2 * j->slot->room), AQR_OUT_OF_MEMORY);
     work += n;
     for (size_t i = 0; i < n; i++)
     {
@@ -463,38 +513,6 @@ static aqr_status choose_centres(aqr_context* c, job* j, double from, double to)
         j->covered[w] = blended;
     }
   }
-done:
-  return status;
-}
-
-/* Adds every shared ball to the points near it that have none, in the order of the balls. */
-static aqr_status blend_balls(aqr_context* c, job* j, double from, double to)
-{
-  aqr_status status = AQR_OK;
-  size_t n, work = 0;
-  for (size_t i = 0; i < j->n_centres; i++)
-  {
-    AQR_TRY(count_work(c, &work, 1, from + (to - from) * (double)i / (double)j->n_centres));
-    aqr_index v = j->centres[i];
-    if (j->covered[v] != shared_ball)
-      continue;
-    double radius = radius_at(j, v), limit = reach * radius;
-    AQR_TRY(disk(c, j, j->slot, v, limit, &n));
-    work += n;
-    for (size_t m = 0; m < n; m++)
-    {
-      aqr_index w = j->slot->queue[m];
-      if (j->covered[w] != blended || !may_stand_in(j, radius, w))
-        continue;
-      double x = 1 - v3_norm2(v3_sub(aqr_point(j->s, w), aqr_point(j->s, v))) / (limit * limit);
-      j->weight[w] += x * x;
-      for (size_t a = 0; a < 6; a++)
-        j->t[6 * (size_t)w + a] += x * x * j->t[6 * (size_t)v + a];
-    }
-  }
-  for (size_t v = 0; v < j->s->n_points; v++)
-    for (size_t a = 0; a < 6 && j->covered[v] == blended; a++)
-      j->t[6 * v + a] /= j->weight[v];
 done:
   return status;
 }
@@ -511,6 +529,7 @@ static void free_job(aqr_context* c, job* j)
   for (slot* k = j->slot; k < j->slot + slots; k++)
   {
     AQR_DROP(c, k->queue, k->room);
+    AQR_DROP(c, k->near, k->near_room);
     AQR_DROP(c, k->inside, j->inside_bytes);
   }
 }
@@ -530,7 +549,8 @@ static bool allocate_job(aqr_context* c, job* j)
   for (slot* k = j->slot; ok && k < j->slot + slots; k++)
   {
     k->inside = AQR_NEW0(c, uint8_t, j->inside_bytes);
-    ok = k->inside && AQR_RESERVE(c, k->queue, k->room, first_queue);
+    ok =
+      k->inside && AQR_RESERVE(c, k->queue, k->room, first_queue) && AQR_RESERVE(c, k->near, k->near_room, first_queue);
   }
   return ok;
 }
@@ -554,8 +574,8 @@ aqr_status aqr_curvature_tensors(aqr_context* c, const aqr_surface* s, double ra
   AQR_TRY(aqr_parallel(c, s->n_faces, measure_areas, &j, 0.1, 0.1));
   AQR_TRY(aqr_parallel(c, n, lump_points, &j, 0.1, 0.2));
   AQR_TRY(choose_centres(c, &j, 0.2, 0.3));
-  AQR_TRY(fill_balls(c, &j, 0.3, 0.95));
-  AQR_TRY(blend_balls(c, &j, 0.95, 1));
+  AQR_TRY(fill_balls(c, &j, 0.3, 1));
+  AQR_TRY(aqr_parallel(c, n, divide, &j, 1, 1));
 done:
   free_job(c, &j);
   if (status != AQR_OK)
