@@ -394,10 +394,52 @@ static bool triangle_may_go(const aqr_polygon_mesh* m, aqr_index h)
   return aqr_pm_valence(m, w) > (aqr_pm_on_border(m, w) ? 2 : 3);
 }
 
+/* Whether a triangle would be one in whose corner, inside a chain, two edges of chains meet: on a straight crease it
+ * has no area. The edges lie between the vertices in turn, from the first to the second on. */
+static bool is_flat(const aqr_polygon_mesh* m, const aqr_index* vertex, const bool* on_chain)
+{
+  for (unsigned i = 0; i < 3; i++)
+  {
+    uint8_t kind = m->vertices[vertex[i]].kind;
+    if (on_chain[i] && on_chain[(i + 2) % 3] && (kind == AQR_VERTEX_FEATURE || kind == AQR_VERTEX_BOUNDARY))
+      return true;
+  }
+  return false;
+}
+
+/* Whether contracting h leaves such a triangle of its face, or beyond the two edges of it that become one. `kept`: the
+ * end of h that stays. */
+static bool flattens(const aqr_polygon_mesh* m, aqr_index h, aqr_index kept)
+{
+  aqr_index n = aqr_pm_next(m, h), p = aqr_pm_prev(m, h), o = aqr_pm_next(m, n);
+  if (aqr_pm_face(m, h) == AQR_NONE)
+    return false;
+  if (aqr_pm_next(m, o) == p) /* a quad */
+  {
+    const aqr_index vertex[3] = { kept, aqr_pm_from(m, o), aqr_pm_from(m, p) };
+    const bool on_chain[3] = { aqr_pm_on_chain(m, n), aqr_pm_on_chain(m, o), aqr_pm_on_chain(m, p) };
+    return is_flat(m, vertex, on_chain);
+  }
+  if (o != p || aqr_pm_on_chain(m, n) == aqr_pm_on_chain(m, p))
+    return false;
+  aqr_index k = (aqr_pm_on_chain(m, n) ? p : n) ^ 1; /* comes to lie on the chain */
+  if (aqr_pm_face(m, k) == AQR_NONE || apex(m, k) == AQR_NONE)
+    return false;
+  aqr_index gone = aqr_pm_from(m, h) == kept ? aqr_pm_to(m, h) : aqr_pm_from(m, h);
+  aqr_index vertex[3] = { aqr_pm_from(m, k), aqr_pm_to(m, k), apex(m, k) };
+  for (unsigned i = 0; i < 3; i++)
+    vertex[i] = vertex[i] == gone ? kept : vertex[i];
+  const bool on_chain[3] = { true, aqr_pm_on_chain(m, aqr_pm_next(m, k)), aqr_pm_on_chain(m, aqr_pm_prev(m, k)) };
+  return is_flat(m, vertex, on_chain);
+}
+
 bool aqr_can_contract(const aqr_polygon_mesh* m, aqr_index h)
 {
   aqr_index t = h ^ 1, u = aqr_pm_from(m, h), v = aqr_pm_to(m, h), f = aqr_pm_face(m, h), g = aqr_pm_face(m, t);
   if (!chains_allow(m, h) || !triangle_may_go(m, h) || !triangle_may_go(m, t))
+    return false;
+  aqr_index kept = m->vertices[v].kind > m->vertices[u].kind ? v : u;
+  if (flattens(m, h, kept) || flattens(m, t, kept))
     return false;
   aqr_index left = apex(m, h), right = apex(m, t);
   size_t valence = aqr_pm_valence(m, u) + aqr_pm_valence(m, v) - 2 - (left != AQR_NONE) - (right != AQR_NONE);

@@ -13,6 +13,7 @@ static void check_quads(const char* name, shape m, double least_quads, int64_t p
   aqr_options o = options_for_points(points);
   survey s = check_remesh(name, &m, &o);
   CHECK_BELOW(1 - (double)s.quads / (double)(s.faces + 1), 1 - least_quads);
+  CHECK(!s.areas_lost); /* two vertices of creases around one face were brought together */
   shape_free(&m);
 }
 
