@@ -60,7 +60,7 @@ static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
     v = share(vb, sum);
     w = share(vc, sum);
   }
-  double u = v == 0 ? 1 - w : w == 0 ? 1 - v : fmax(0, 1 - v - w);
+  double u = v == 0 ? 1 - w : w == 0 ? 1 - v : greater(0, 1 - v - w);
   if (v + w >= 1)
     u = 0;
   aqr_closest r = { { f, { u, v, w } }, v3_madd(v3_madd(a, v, ab), w, ac), 0 };

@@ -128,7 +128,7 @@ static void lump_points(void* data, size_t begin, size_t end)
       {
         add_edge(p.sum, e, j->beta[h] / (2 * l));
         length += l;
-        p.longest = fmax(p.longest, l);
+        p.longest = greater(p.longest, l);
         n++;
       }
       h = aqr_next_around(s, h);
@@ -143,7 +143,7 @@ static void lump_points(void* data, size_t begin, size_t end)
 
 static double radius_at(const job* j, aqr_index v)
 {
-  return fmax(j->radius, fmin(least_radius * j->length[v], least_root * sqrt(j->lumps[v].area)));
+  return greater(j->radius, lesser(least_radius * j->length[v], least_root * sqrt(j->lumps[v].area)));
 }
 
 /* Of balls that hold many points neighbours may share one. */
@@ -177,8 +177,8 @@ static double share_inside(const ball* b, vec3 p, vec3 e)
 {
   vec3 d = v3_sub(p, b->centre);
   double a = v3_norm2(e), half = v3_dot(d, e);
-  double t = (sqrt(fmax(half * half + a * (b->radius2 - v3_norm2(d)), 0)) - half) / a;
-  return t > 0 ? fmin(t, 1) : 0;
+  double t = (sqrt(greater(0, half * half + a * (b->radius2 - v3_norm2(d)))) - half) / a;
+  return t > 0 ? lesser(1, t) : 0;
 }
 
 /* The piece of an edge between two points outside that the sphere cuts off. */
@@ -245,7 +245,7 @@ static void clip_face(const job* j, ball* b, aqr_index h, vec3 u, const spoke* p
     inside = area * p->share * q->share + segment(b, end, v3_madd(u, p->share, v3_sub(p->end, u)));
     add_opposite(j, b, h);
   }
-  b->area += fmin(inside, area) - area * (p->inside ? 2. / 3 : 1. / 3);
+  b->area += lesser(area, inside) - area * (p->inside ? 2. / 3 : 1. / 3);
 }
 
 static bool visit(slot* k, size_t* n, aqr_index v)

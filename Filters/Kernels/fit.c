@@ -230,7 +230,8 @@ static void measure(void* data, size_t begin, size_t end)
       p[k] = aqr_pm_point(f->m, t->v[k]);
     vec3 ab = v3_sub(p[1], p[0]), ac = v3_sub(p[2], p[0]), cross = v3_cross(ab, ac), normal = v3_unit(cross);
     double area = 0.5 * v3_norm(cross), error = 0;
-    double reach = fmax(fmax(v3_norm2(ab), v3_norm2(ac)), v3_norm2(v3_sub(ab, ac))) * farthest_sample * farthest_sample;
+    double reach =
+      greater(greater(v3_norm2(ab), v3_norm2(ac)), v3_norm2(v3_sub(ab, ac))) * farthest_sample * farthest_sample;
     for (unsigned k = 0; k < samples; k++)
     {
       const double* w = barycentric[k];
@@ -238,7 +239,7 @@ static void measure(void* data, size_t begin, size_t end)
       vec3 q = v3_madd(v3_madd(v3_scale(p[0], w[0]), w[1], p[1]), w[2], p[2]);
       aqr_closest below = aqr_closest_near(s, x->face, q, most_steps, true);
       vec3 n = v3_unit(aqr_face_cross(s, below.place.face));
-      error += area * weight[k] * fmin(reach, below.distance2);
+      error += area * weight[k] * lesser(reach, below.distance2);
       bool use = below.distance2 < reach && v3_dot(n, normal) > least_cosine;
       double a = use ? sqrt(area * weight[k]) : 0;
       x->normal[0] = (float)(a * n.x);
@@ -456,7 +457,7 @@ static void limit(void* data, size_t begin, size_t end)
     aqr_index h = m->vertices[v].out;
     do
     {
-      least = fmin(least, v3_norm2(v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), m->vertices[v].position)));
+      least = lesser(least, v3_norm2(v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), m->vertices[v].position)));
       h = aqr_pm_next_around(m, h);
     } while (h != m->vertices[v].out);
     double most = farthest_move * sqrt(least);

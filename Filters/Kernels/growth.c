@@ -313,8 +313,8 @@ static aqr_status grow_step(aqr_context* c, aqr_grower* g)
   double along, across;
   aqr_sizing_at(s, g->field, g->sizing, t->chart.face, aqr_tracer_direction(t), &along, &across);
   double scale = aqr_sizing_scale(s, g->sizing, t->chart.face);
-  w->densest = fmin(w->densest, scale);
-  double least = fmin(along, across);
+  w->densest = lesser(w->densest, scale);
+  double least = lesser(along, across);
   if (i == 0)
     w->step = longest_step * least;
   if (i % in_place == 0)
@@ -334,10 +334,10 @@ static aqr_status grow_step(aqr_context* c, aqr_grower* g)
     aqr_index edge = t->n_samples ? t->samples[t->n_samples - 1].edge : AQR_NONE;
     stop(g, edge != AQR_NONE && aqr_is_seam(s, edge) ? AQR_END_FEATURE : AQR_END_BOUNDARY);
   }
-  else if (t->travelled - w->queried >= query_every * stop_distance * fmax(across, sqrt(along * across)))
+  else if (t->travelled - w->queried >= query_every * stop_distance * greater(across, sqrt(along * across)))
   {
     w->queried = t->travelled;
-    AQR_TRY(look_around(c, g, fmin(most_stop_distance, stop_distance * scale / w->densest) * across));
+    AQR_TRY(look_around(c, g, lesser(most_stop_distance, stop_distance * scale / w->densest) * across));
   }
 done:
   return status;

@@ -25,7 +25,7 @@ void aqr_pcell_free(aqr_context* c, aqr_pcell* cell)
 static double distance2_to_segment(vec3 p, vec3 a, vec3 b)
 {
   vec3 ab = v3_sub(b, a), ap = v3_sub(p, a);
-  double n = v3_norm2(ab), t = n > 0 ? fmin(1, fmax(0, v3_dot(ap, ab) / n)) : 0;
+  double n = v3_norm2(ab), t = n > 0 ? lesser(1, greater(0, v3_dot(ap, ab) / n)) : 0;
   return v3_norm2(v3_madd(ap, -t, ab));
 }
 
@@ -110,7 +110,7 @@ static void search(const aqr_segment* segments, const aqr_sample* samples, aqr_i
     if (line == probe->self)
     {
       /* by the nearer end: in a large face a chord that starts far back ends at the probe */
-      double back = fmin(fabs((double)a->arc - probe->arc), fabs((double)a[1].arc - probe->arc));
+      double back = lesser(fabs((double)a->arc - probe->arc), fabs((double)a[1].arc - probe->arc));
       if (back * back < detour * detour * distance2)
         continue;
     }

@@ -129,10 +129,10 @@ static void ask(void* data, size_t begin, size_t end)
 static double spacing_at(const aqr_sizing* z, size_t point, unsigned branch, double tolerance)
 {
   double size = sqrt((double)z->area[point]);
-  double bend = fmax(z->least_bend, (double)z->bend[2 * point + branch]);
-  double d = fmin(fmax(finest * size, spacing_of(bend, tolerance)), z->largest * z->stretch);
-  d = fmax(densest * size, d * (z->scale ? (double)z->scale[point] * z->unit : 1));
-  return fmax(least_spacing, z->coarser * d);
+  double bend = greater(z->least_bend, (double)z->bend[2 * point + branch]);
+  double d = lesser(greater(finest * size, spacing_of(bend, tolerance)), z->largest * z->stretch);
+  d = greater(densest * size, d * (z->scale ? (double)z->scale[point] * z->unit : 1));
+  return greater(least_spacing, z->coarser * d);
 }
 
 static void space(void* data, size_t begin, size_t end)

@@ -164,7 +164,7 @@ vec3 aqr_tracer_direction(const aqr_tracer* t)
 /* Half the angle of a unit number. */
 static aqr_complex half_angle(aqr_complex u)
 {
-  double x = fmax(0, (1 + u.x) / 2), y = fmax(0, (1 - u.x) / 2);
+  double x = greater(0, (1 + u.x) / 2), y = greater(0, (1 - u.x) / 2);
   return cx(sqrt(x), copysign(sqrt(y), u.y));
 }
 
@@ -178,7 +178,7 @@ static aqr_complex nearest_branch(const aqr_tracer* t, aqr_complex d)
   for (unsigned i = 0; i < 3; i++)
   {
     aqr_complex a = chart->q[(i + 1) % 3], b = chart->q[(i + 2) % 3];
-    w[i] = fmax(0, cx_cross(cx_sub(b, a), cx_sub(x, a)));
+    w[i] = greater(0, cx_cross(cx_sub(b, a), cx_sub(x, a)));
     sum += w[i];
   }
   aqr_complex u = cx(0, 0);
@@ -247,7 +247,7 @@ static aqr_status record(aqr_context* c, aqr_tracer* t, aqr_index h, double at, 
   }
   if (!AQR_RESERVE(c, t->samples, t->capacity, t->n_samples + 1))
     return AQR_OUT_OF_MEMORY;
-  at = fmin(fmax(at, sample_band), 1 - sample_band);
+  at = lesser(1 - sample_band, greater(sample_band, at));
   if (edge != h)
     at = 1 - at;
   t->samples[t->n_samples++] =
@@ -335,7 +335,7 @@ static unsigned opposite_edge(const aqr_chart* chart, unsigned corner, aqr_compl
   unsigned k = (corner + 1) % 3;
   double a = cx_cross(d, cx_sub(chart->q[k], chart->q[corner]));
   double b = cx_cross(d, cx_sub(chart->q[(k + 1) % 3], chart->q[corner]));
-  *at = b > a ? fmin(1, fmax(0, a / (a - b))) : 0.5;
+  *at = b > a ? lesser(1, greater(0, a / (a - b))) : 0.5;
   return k;
 }
 
@@ -392,12 +392,12 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
     {
       /* along the very edge it stands on, on its outer side by rounding: over it where it stands */
       aqr_complex e = cx_sub(t->chart.q[j], t->chart.q[k]);
-      at = fmin(1, fmax(0, cx_dot(cx_sub(t->x, t->chart.q[k]), e) / cx_dot(e, e)));
+      at = lesser(1, greater(0, cx_dot(cx_sub(t->x, t->chart.q[k]), e) / cx_dot(e, e)));
       exit = t->x;
     }
-    reach = fmax(0, reach);
+    reach = greater(0, reach);
     if (recording)
-      t->travelled += fmin(reach, length);
+      t->travelled += lesser(length, reach);
     if (reach >= length)
     {
       t->x = cx_madd(t->x, length, d);
@@ -457,12 +457,12 @@ static aqr_status predict(aqr_context* c, aqr_tracer* t, aqr_complex d, double l
 aqr_status aqr_tracer_step(
   aqr_context* c, aqr_tracer* t, double* step, double shortest, double longest, aqr_advance* result)
 {
-  double h = fmin(fmax(*step, shortest), longest);
+  double h = lesser(longest, greater(shortest, *step));
   aqr_status status = AQR_OK;
   if (!aqr_tracer_align(t))
   {
     *step = h;
-    return move(c, t, t->d, fmin(h, 2 * shortest), true, result);
+    return move(c, t, t->d, lesser(h, 2 * shortest), true, result);
   }
   aqr_complex k1 = t->d, k2, k3, k4, mean;
   for (;;)
@@ -474,10 +474,10 @@ aqr_status aqr_tracer_step(
     double error = fabs(cx_cross(mean, k2)) + fabs(cx_cross(k2, k3));
     if (error <= turn_error || h <= shortest)
     {
-      *step = error < turn_error / 4 ? fmin(2 * h, longest) : h;
+      *step = error < turn_error / 4 ? lesser(2 * h, longest) : h;
       break;
     }
-    h = fmax(h / 2, shortest);
+    h = greater(h / 2, shortest);
   }
   t->d = mean;
   AQR_TRY(move(c, t, mean, h, true, result));

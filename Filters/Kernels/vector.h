@@ -10,6 +10,16 @@ typedef struct vec3
   double x, y, z;
 } vec3;
 
+/* As fmin and fmax, which are calls where NaN counts; here a NaN is taken only from the first. */
+static inline double lesser(double a, double b)
+{
+  return b < a ? b : a;
+}
+static inline double greater(double a, double b)
+{
+  return b > a ? b : a;
+}
+
 static inline vec3 v3(double x, double y, double z)
 {
   return (vec3){ x, y, z };
