@@ -24,6 +24,11 @@ typedef struct slot
   aqr_index first[4], end;
 } slot;
 
+/* What threads write to without waiting for each other. */
+typedef _Atomic(aqr_index) shared_index;
+typedef _Atomic(int32_t) shared_number;
+typedef _Atomic(uint8_t) shared_flag;
+
 typedef struct regions
 {
   aqr_context* c;
@@ -32,16 +37,15 @@ typedef struct regions
   const aqr_network* net;
   aqr_lines* lines;
   /* Shared by threads; whatever their order, a root is the least item of its region and sums are the same. */
-  _Atomic(aqr_index)* parent; /* union-find over items: faces without chords, then loops */
+  shared_index* parent; /* union-find over items: faces without chords, then loops */
   size_t n_items;
-  _Atomic(int32_t)* euler; /* per root */
-  _Atomic(uint8_t)*
-    bordered;       /* per root: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
-  uint8_t* suspect; /* per face: looked at */
-  uint8_t* large;   /* per face: has more chords than threads have room for */
-  uint8_t* is_bare; /* per face: of a component without network */
-  aqr_index* start; /* per half-edge: the item where it begins, AQR_NONE where it is cut */
-  aqr_layout at;    /* of the face looked at */
+  shared_number* euler;  /* per root */
+  shared_flag* bordered; /* per root: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
+  uint8_t* suspect;      /* per face: looked at */
+  uint8_t* large;        /* per face: has more chords than threads have room for */
+  uint8_t* is_bare;      /* per face: of a component without network */
+  aqr_index* start;      /* per half-edge: the item where it begins, AQR_NONE where it is cut */
+  aqr_layout at;         /* of the face looked at */
   /* of regions to be cut */
   aqr_index* slot; /* per face: where its pieces are listed, or AQR_NONE */
   slot* slots;
@@ -818,9 +822,9 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   *added = 0;
   r.n_items = s->n_faces + net->n_loops;
   r.start = AQR_NEW(c, aqr_index, 3 * s->n_faces);
-  r.parent = AQR_NEW(c, _Atomic(aqr_index), r.n_items);
-  r.euler = AQR_NEW0(c, _Atomic(int32_t), r.n_items);
-  r.bordered = AQR_NEW0(c, _Atomic(uint8_t), r.n_items);
+  r.parent = AQR_NEW(c, shared_index, r.n_items);
+  r.euler = AQR_NEW0(c, shared_number, r.n_items);
+  r.bordered = AQR_NEW0(c, shared_flag, r.n_items);
   r.large = AQR_NEW0(c, uint8_t, s->n_faces);
   r.slot = AQR_NEW(c, aqr_index, s->n_faces);
   AQR_REQUIRE(r.start && r.parent && r.euler && r.bordered && r.large && r.slot, AQR_OUT_OF_MEMORY);
