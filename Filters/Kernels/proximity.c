@@ -12,12 +12,14 @@ aqr_status aqr_pcell_init(aqr_context* c, const aqr_surface* s, aqr_pcell* cell)
 {
   memset(cell, 0, sizeof *cell);
   cell->surface = s;
-  return aqr_face_map_init(c, &cell->inside);
+  cell->stamp = AQR_NEW0(c, uint32_t, s->n_faces);
+  return cell->stamp ? AQR_OK : AQR_OUT_OF_MEMORY;
 }
 
 void aqr_pcell_free(aqr_context* c, aqr_pcell* cell)
 {
-  aqr_face_map_free(c, &cell->inside);
+  if (cell->surface)
+    AQR_DROP(c, cell->stamp, cell->surface->n_faces);
   AQR_DROP(c, cell->entries, cell->capacity);
   memset(cell, 0, sizeof *cell);
 }
@@ -32,22 +34,18 @@ static double distance2_to_segment(vec3 p, vec3 a, vec3 b)
 /* Room for the cell's next two faces. */
 static bool reserve(aqr_context* c, aqr_pcell* cell)
 {
-  return AQR_RESERVE(c, cell->entries, cell->capacity, cell->n_entries + 3) &&
-         aqr_face_map_reserve(c, &cell->inside, 4);
+  return AQR_RESERVE(c, cell->entries, cell->capacity, cell->n_entries + 3);
 }
 
 /* Takes in the face over half-edge h, unless no part of that edge is within the radius. */
 static void cross(aqr_pcell* cell, const aqr_probe* probe, aqr_index h, vec3 from, vec3 to, bool from_in, bool to_in)
 {
   aqr_index twin = aqr_twin(cell->surface, h);
-  if (twin == AQR_NONE)
-    return;
-  aqr_spot* spot = aqr_face_map_find(&cell->inside, aqr_face_of(twin));
-  if (aqr_face_map_has(&cell->inside, spot))
+  if (twin == AQR_NONE || cell->stamp[aqr_face_of(twin)] == cell->query)
     return;
   if (!from_in && !to_in && distance2_to_segment(probe->p, from, to) >= probe->radius * probe->radius)
     return;
-  aqr_face_map_take(&cell->inside, spot, aqr_face_of(twin), 0);
+  cell->stamp[aqr_face_of(twin)] = cell->query;
   cell->entries[cell->n_entries++] = (aqr_entry){ twin, to_in, from_in };
 }
 
@@ -62,10 +60,14 @@ static aqr_status begin(aqr_context* c, aqr_pcell* cell, const aqr_probe* probe)
   const aqr_surface* s = cell->surface;
   cell->n_entries = 0;
   cell->queries++;
-  aqr_face_map_clear(&cell->inside);
+  if (++cell->query == 0) /* the counter came round: no stamp of an earlier turn may be taken for a new one */
+  {
+    memset(cell->stamp, 0, s->n_faces * sizeof *cell->stamp);
+    cell->query = 1;
+  }
   if (!reserve(c, cell))
     return AQR_OUT_OF_MEMORY;
-  aqr_face_map_take(&cell->inside, aqr_face_map_find(&cell->inside, probe->face), probe->face, 0);
+  cell->stamp[probe->face] = cell->query;
   vec3 p[3];
   bool in[3];
   for (unsigned i = 0; i < 3; i++)
@@ -92,16 +94,13 @@ static aqr_status extend(aqr_context* c, aqr_pcell* cell, const aqr_probe* probe
   return AQR_OK;
 }
 
-/* A list of segments from k on, down to number `since`: those of the direction's family. */
-static void search(const aqr_segment* segments, const aqr_sample* samples, aqr_index k, size_t since,
-  const aqr_probe* probe, double* nearest2, aqr_near* found)
+/* The segments of the direction's family in one face. */
+static void look(const aqr_lines* lines, aqr_index face, const aqr_probe* probe, double* nearest2, aqr_near* found)
 {
-  for (; k != AQR_NONE && k >= since; k = segments[k].next)
+  for (aqr_index k = lines->head[face]; k != AQR_NONE; k = lines->segments[k].next)
   {
-    aqr_index n = segments[k].sample, line = segments[k].line;
-    const aqr_sample* a = &samples[n];
-    if (line >= AQR_GUESS && line != AQR_OWN && line - AQR_GUESS >= probe->guesses)
-      continue;
+    aqr_index n = lines->segments[k].sample, line = lines->segments[k].line;
+    const aqr_sample* a = &lines->samples[n];
     vec3 d = v3_sub(a[1].p, a->p);
     double along = v3_dot(d, probe->direction);
     if (along * along < family_cosine2 * v3_norm2(d))
@@ -122,26 +121,6 @@ static void search(const aqr_segment* segments, const aqr_sample* samples, aqr_i
   }
 }
 
-/* The segments in one face, newest first. */
-static void look(const aqr_lines* lines, aqr_index face, const aqr_probe* probe, double* nearest2, aqr_near* found)
-{
-  if (probe->draft)
-  {
-    const aqr_spot* spot = aqr_face_map_find(&probe->draft->newest, face);
-    if (aqr_face_map_has(&probe->draft->newest, spot))
-      search(probe->draft->segments, probe->draft->samples, spot->value, 0, probe, nearest2, found);
-  }
-  search(lines->segments, lines->samples, lines->head[face], 0, probe, nearest2, found);
-}
-
-bool aqr_probe_sees(const aqr_lines* lines, aqr_index face, size_t since, const aqr_probe* probe)
-{
-  double nearest2 = probe->radius * probe->radius;
-  aqr_near found = { AQR_NONE, AQR_NONE, 0 };
-  search(lines->segments, lines->samples, lines->head[face], since, probe, &nearest2, &found);
-  return found.line != AQR_NONE;
-}
-
 aqr_status aqr_pcell_nearest(
   aqr_context* c, aqr_pcell* cell, const aqr_lines* lines, const aqr_probe* probe, aqr_near* found)
 {
@@ -149,9 +128,7 @@ aqr_status aqr_pcell_nearest(
   *found = (aqr_near){ AQR_NONE, AQR_NONE, 0 };
   look(lines, probe->face, probe, &nearest2, found);
   aqr_status status = begin(c, cell, probe);
-  const size_t most = probe->most_faces ? probe->most_faces : SIZE_MAX;
-  for (size_t i = 0; status == AQR_OK && i < cell->n_entries && i < most && !(probe->any && found->line != AQR_NONE);
-       i++)
+  for (size_t i = 0; status == AQR_OK && i < cell->n_entries && !(probe->any && found->line != AQR_NONE); i++)
   {
     look(lines, aqr_face_of(cell->entries[i].h), probe, &nearest2, found);
     status = extend(c, cell, probe, cell->entries[i]);

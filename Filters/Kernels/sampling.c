@@ -17,9 +17,6 @@ enum
   score_levels = 64,
   most_passes = 12,   /* at reaching the number of points asked for */
   most_on_edge = 8,   /* spacings along an edge of a chain, however small the tolerance */
-  plots = 16,         /* seeds grown side by side */
-  slice = 64,         /* steps that each grows before it is seen by the others */
-  look_ahead = 4096,  /* faces asked side by side whether they have room for a seed */
   most_failures = 50, /* growths that come to nothing, per line kept ... */
   free_failures = 64  /* ... and these many lines more: the bound of the work along threads without area */
 };
@@ -49,25 +46,6 @@ typedef struct parent
   aqr_index asked; /* one more than the marks it had when it was last asked for seeds; 0 before */
 } parent;
 
-/* A place for a line inside a face, along `d`, at least `distance` from its family. */
-typedef struct seed
-{
-  aqr_index face;
-  vec3 p, d;
-  double distance;
-} seed;
-
-/* A seed that grows beside others, all on the lines that are there. */
-typedef struct plot
-{
-  aqr_context c; /* its own, since memory is counted */
-  aqr_grower grower;
-  const seed* seed;
-  bool asked, allowed;
-  size_t shown; /* segments of its line that the others see */
-  aqr_status status;
-} plot;
-
 typedef struct sampler
 {
   aqr_context* c;
@@ -83,13 +61,9 @@ typedef struct sampler
   size_t n_parents, parent_capacity;
   double* places; /* marks of the parent being asked, in order */
   size_t n_places, place_capacity;
-  seed* seeds; /* of the parent being asked */
-  size_t n_seeds, seed_capacity;
-  plot* plots;        /* NULL where one thread does all */
-  size_t n_questions; /* proximity queries, besides the grower's */
-  size_t n_failed;    /* growths that came to nothing */
-  double points;      /* expected of the lines: their crossings, and on chains their ends or the chain's own spacing */
-  double goal;        /* no further seeds once as many are expected */
+  size_t n_failed; /* growths that came to nothing */
+  double points;   /* expected of the lines: their crossings, and on chains their ends or the chain's own spacing */
+  double goal;     /* no further seeds once as many are expected */
 } sampler;
 
 /* ---- chains ---- */
@@ -270,9 +244,10 @@ static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
 
 static aqr_status cross_seams(sampler* m, aqr_index from);
 
-/* Commits the line that has grown; *id is AQR_NONE where it was not worth keeping. */
-static aqr_status commit(sampler* m, aqr_grower* g, aqr_index partner, aqr_index* id)
+/* Commits the grower's line; *id is AQR_NONE where it was not worth keeping. */
+static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
 {
+  aqr_grower* g = &m->grower;
   *id = AQR_NONE;
   if (!worth_keeping(&g->line, g->samples))
   {
@@ -311,7 +286,7 @@ static aqr_status cross_seam(sampler* m, aqr_index sample, aqr_index* id)
   if (status != AQR_OK || !allowed)
     return status;
   status = aqr_grow_from_border(m->c, &m->grower, h, t, inward);
-  return status == AQR_OK ? commit(m, &m->grower, sample, id) : status;
+  return status == AQR_OK ? commit(m, sample, id) : status;
 }
 
 /* Continues line `from` over the seams at its ends, and the continuations over theirs. */
@@ -333,222 +308,32 @@ static aqr_status cross_seams(sampler* m, aqr_index from)
   return AQR_OK;
 }
 
-/* Whether seeds are still wanted. */
-static bool wants_seeds(const sampler* m)
+/* A seed inside face f, for a line along `d`, at least `distance` from its family. */
+static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double distance)
 {
-  return m->points < m->goal && m->n_failed <= most_failures * (m->lines->n_lines + free_failures);
-}
-
-static aqr_place place_of(const sampler* m, const seed* x)
-{
+  bool allowed;
+  aqr_index id = AQR_NONE;
+  if (m->points >= m->goal || m->n_failed > most_failures * (m->lines->n_lines + free_failures))
+    return AQR_OK;
+  aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
+  if (status != AQR_OK || !allowed)
+    return status;
   const aqr_surface* s = m->s;
-  aqr_place at = { x->face, { 0, 0, 0 } };
-  vec3 n = aqr_face_cross(s, x->face);
+  aqr_place at = { f, { 0, 0, 0 } };
+  vec3 n = aqr_face_cross(s, f);
   double sum = 0;
   for (unsigned i = 0; i < 3; i++)
   {
-    vec3 a = aqr_point(s, s->corner[3 * x->face + (i + 1) % 3]), b = aqr_point(s, s->corner[3 * x->face + (i + 2) % 3]);
-    at.bary[i] = fmax(1e-6, v3_dot(n, v3_cross(v3_sub(a, x->p), v3_sub(b, x->p))));
+    vec3 a = aqr_point(s, s->corner[3 * f + (i + 1) % 3]), b = aqr_point(s, s->corner[3 * f + (i + 2) % 3]);
+    at.bary[i] = fmax(1e-6, v3_dot(n, v3_cross(v3_sub(a, p), v3_sub(b, p))));
     sum += at.bary[i];
   }
   for (unsigned i = 0; i < 3; i++)
     at.bary[i] = sum > 0 ? at.bary[i] / sum : 1.0 / 3;
-  return at;
-}
-
-/* Commits the line that has grown inside, and what goes on from it over seams. */
-static aqr_status commit_inside(sampler* m, aqr_grower* g)
-{
-  aqr_index id;
-  aqr_status status = commit(m, g, AQR_NONE, &id);
+  status = aqr_grow_inside(m->c, &m->grower, &at, d);
+  if (status == AQR_OK)
+    status = commit(m, AQR_NONE, &id);
   return status == AQR_OK && id != AQR_NONE ? cross_seams(m, id) : status;
-}
-
-static aqr_status sow_one(sampler* m, const seed* x)
-{
-  bool allowed;
-  if (!wants_seeds(m))
-    return AQR_OK;
-  aqr_status status = aqr_grow_allowed(m->c, &m->grower, x->face, x->p, x->d, x->distance, &allowed);
-  if (status != AQR_OK || !allowed)
-    return status;
-  aqr_place at = place_of(m, x);
-  status = aqr_grow_inside(m->c, &m->grower, &at, x->d);
-  return status == AQR_OK ? commit_inside(m, &m->grower) : status;
-}
-
-/* ---- seeds side by side ---- */
-
-/* Grows the seeds of some plots by a slice each. */
-static void grow_plots(void* data, size_t begin, size_t end)
-{
-  const sampler* m = data;
-  for (size_t i = begin; i < end; i++)
-  {
-    plot* x = &m->plots[i];
-    aqr_grower* g = &x->grower;
-    if (!x->asked)
-    {
-      x->asked = true;
-      x->status = aqr_grow_allowed(&x->c, g, x->seed->face, x->seed->p, x->seed->d, x->seed->distance, &x->allowed);
-      aqr_place at = place_of(m, x->seed);
-      aqr_grow_start(g, &at, x->seed->d);
-    }
-    if (x->status == AQR_OK && x->allowed && !g->grown)
-      x->status = aqr_grow_on(&x->c, g, slice);
-  }
-}
-
-/* Takes over what the plots did with their contexts. */
-static aqr_status end_turn(sampler* m, size_t n)
-{
-  aqr_status status = AQR_OK;
-  for (plot* x = m->plots; x < m->plots + n; x++)
-  {
-    m->c->bytes += x->c.bytes;
-    x->c.bytes = 0;
-    if (x->status != AQR_OK)
-      status = x->status;
-  }
-  if (m->c->bytes > m->c->peak_bytes)
-    m->c->peak_bytes = m->c->bytes;
-  return status;
-}
-
-/* Lets the other plots see what has grown so far: lines that would run together stop there at once, and not only when
- * they are committed. Shown samples and segments stand beyond the committed ones. */
-static aqr_status show(sampler* m, unsigned k, size_t* n_shown)
-{
-  plot* x = &m->plots[k];
-  const aqr_draft* d = &x->grower.draft;
-  aqr_lines* l = m->lines;
-  for (; x->shown < d->n_segments; x->shown++)
-  {
-    size_t n = l->n_samples + *n_shown;
-    if (!AQR_RESERVE(m->c, l->samples, l->sample_capacity, n + 2) ||
-        !AQR_RESERVE(m->c, l->segments, l->segment_capacity, l->n_segments + 1))
-      return AQR_OUT_OF_MEMORY;
-    const aqr_sample* a = &d->samples[d->segments[x->shown].sample];
-    l->samples[n] = a[0];
-    l->samples[n + 1] = a[1];
-    l->segments[l->n_segments] = (aqr_segment){ (aqr_index)n, AQR_GUESS + k, l->head[a->face] };
-    l->head[a->face] = (aqr_index)l->n_segments++;
-    *n_shown += 2;
-  }
-  return AQR_OK;
-}
-
-static void hide(aqr_lines* l, size_t n_segments)
-{
-  while (l->n_segments > n_segments)
-  {
-    const aqr_segment* k = &l->segments[--l->n_segments];
-    l->head[l->samples[k->sample].face] = k->next;
-  }
-}
-
-static aqr_status grow_all(sampler* m, const seed* seeds, size_t n)
-{
-  aqr_status status = AQR_OK;
-  size_t n_shown = 0, n_segments = m->lines->n_segments, active = n;
-  for (unsigned k = 0; k < n; k++)
-  {
-    plot* x = &m->plots[k];
-    x->seed = &seeds[k];
-    x->asked = x->allowed = false;
-    x->shown = 0;
-    x->grower.guesses = k;
-  }
-  while (active)
-  {
-    AQR_REQUIRE(aqr_step(m->c, 0), AQR_CANCELLED);
-    if (active > 1)
-      m->c->hooks.parallel_for(m->c->hooks.user, n, 1, grow_plots, m);
-    else
-      grow_plots(m, 0, n);
-    AQR_TRY(end_turn(m, n));
-    active = 0;
-    for (unsigned k = 0; k < n; k++)
-      if (m->plots[k].allowed)
-      {
-        AQR_TRY(show(m, k, &n_shown));
-        active += !m->plots[k].grower.grown;
-      }
-  }
-done:
-  hide(m->lines, n_segments);
-  return status;
-}
-
-/* Commits what a plot has grown on the segments before number `since`. */
-static aqr_status harvest(sampler* m, plot* x, size_t since)
-{
-  aqr_grower* g = &x->grower;
-  if (!x->allowed)
-  {
-    m->n_questions++;
-    return AQR_OK;
-  }
-  aqr_review review;
-  aqr_status status = aqr_grow_review(&x->c, g, since, &m->n_questions, &review);
-  if (status == AQR_OK && review == AQR_OUTDATED)
-    return sow_one(m, x->seed);
-  if (status != AQR_OK || review == AQR_NO_ROOM)
-    return status;
-  status = aqr_grow_finish(&x->c, g);
-  return status == AQR_OK ? commit_inside(m, g) : status;
-}
-
-/* Sows the seeds one after the other. Where there are threads they grow side by side first, as if there were no other
- * seeds, and are then committed in turn, as far as those before leave them standing: the lines are the same. */
-static aqr_status sow(sampler* m, const seed* seeds, size_t n)
-{
-  aqr_status status = AQR_OK;
-  for (size_t first = 0; first < n && wants_seeds(m); first += plots)
-  {
-    size_t count = n - first < plots ? n - first : plots, since = m->lines->n_segments;
-    if (!m->plots || count == 1)
-    {
-      for (size_t i = first; i < first + count; i++)
-        AQR_TRY(sow_one(m, &seeds[i]));
-      continue;
-    }
-    AQR_TRY(grow_all(m, seeds + first, count));
-    for (size_t i = 0; i < count && wants_seeds(m); i++)
-      AQR_TRY(harvest(m, &m->plots[i], since));
-    AQR_TRY(end_turn(m, count));
-  }
-done:
-  return status;
-}
-
-static void free_plots(sampler* m)
-{
-  for (size_t i = 0; m->plots && i < plots; i++)
-  {
-    aqr_grower_free(&m->plots[i].c, &m->plots[i].grower);
-    m->c->bytes += m->plots[i].c.bytes;
-  }
-  AQR_DROP(m->c, m->plots, plots);
-}
-
-/* Memory is asked for by all threads at once, which the caller's allocator may not be made for. */
-static aqr_status make_plots(sampler* m)
-{
-  aqr_context* c = m->c;
-  aqr_status status = AQR_OK;
-  if (!c->hooks.parallel_for || c->hooks.reallocate)
-    return AQR_OK;
-  m->plots = AQR_NEW0(c, plot, plots);
-  AQR_REQUIRE(m->plots, AQR_OUT_OF_MEMORY);
-  for (plot* x = m->plots; x < m->plots + plots; x++)
-  {
-    AQR_TRY(aqr_grower_init(&x->c, m->s, m->field, m->sizing, m->lines, &x->grower));
-    x->grower.keeps_looks = true;
-  }
-  AQR_TRY(end_turn(m, plots));
-done:
-  return status;
 }
 
 /* Seeds to one or both sides of a chain. */
@@ -570,7 +355,7 @@ static aqr_status seed_on_chain(sampler* m, aqr_index h, double t, double distan
     {
       status = aqr_grow_from_border(m->c, &m->grower, k, side ? 1 - t : t, inward);
       if (status == AQR_OK)
-        status = commit(m, &m->grower, AQR_NONE, &id);
+        status = commit(m, AQR_NONE, &id);
       if (status == AQR_OK && id != AQR_NONE)
       {
         /* its first end lies on the chain: the other side goes on from there */
@@ -599,7 +384,6 @@ static int by_value(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* A seed at a position along the parent; on chains it is sown at once. */
 static aqr_status seed_at(sampler* m, aqr_index parent, double sigma)
 {
   const aqr_line line = m->lines->lines[parent];
@@ -619,11 +403,8 @@ static aqr_status seed_at(sampler* m, aqr_index parent, double sigma)
   double along = span > 0 ? v3_norm(d) / span : 0;
   if (line.is_chain)
     return seed_on_chain(m, a.edge, t, seed_distance * along);
-  if (!AQR_RESERVE(m->c, m->seeds, m->seed_capacity, m->n_seeds + 1))
-    return AQR_OUT_OF_MEMORY;
   vec3 n = v3_unit(aqr_face_cross(m->s, a.face));
-  m->seeds[m->n_seeds++] = (seed){ a.face, p, v3_unit(v3_cross(n, d)), seed_distance * along };
-  return AQR_OK;
+  return seed_inside(m, a.face, p, v3_unit(v3_cross(n, d)), seed_distance * along);
 }
 
 /* The places along a parent that bound its gaps, in order: its marks, and its ends where they lie on borders. */
@@ -647,12 +428,16 @@ done:
   return status;
 }
 
-/* Seeds for the gaps of one parent. */
-static aqr_status seed_gaps(sampler* m, aqr_index id)
+/* Fills the gaps of one parent with seeds. Lines only come, so what was refused with the same marks is refused again.
+ */
+static aqr_status ask_parent(sampler* m, aqr_index id)
 {
   const aqr_line line = m->lines->lines[id];
   double end = (double)m->lines->samples[line.first + line.count - 1].sigma;
   aqr_status status = AQR_OK;
+  if (m->points >= m->goal || m->parents[id].asked == m->parents[id].n_marks + 1)
+    return AQR_OK;
+  m->parents[id].asked = m->parents[id].n_marks + 1;
   AQR_TRY(collect_places(m, id));
   if (m->n_places == 0)
   {
@@ -683,17 +468,6 @@ static aqr_status seed_gaps(sampler* m, aqr_index id)
   }
 done:
   return status;
-}
-
-/* Fills the gaps of one parent. Lines only come, so what was refused with the same marks is refused again. */
-static aqr_status ask_parent(sampler* m, aqr_index id)
-{
-  if (m->points >= m->goal || m->parents[id].asked == m->parents[id].n_marks + 1)
-    return AQR_OK;
-  m->parents[id].asked = m->parents[id].n_marks + 1;
-  m->n_seeds = 0;
-  aqr_status status = seed_gaps(m, id);
-  return status == AQR_OK ? sow(m, m->seeds, m->n_seeds) : status;
 }
 
 /* Asks every line from `first` on for seeds, old ones first, until a whole round brings none. */
@@ -848,70 +622,6 @@ static aqr_status cover(sampler* m, uint8_t* covered, aqr_index** stack, size_t*
   return AQR_OK;
 }
 
-/* A seed for each family in the middle of a face, as far from all lines of the family as a place may be that has none
- * of its own. */
-static void seed_face(const sampler* m, aqr_index f, seed both[2], double* least)
-{
-  const aqr_surface* s = m->s;
-  vec3 n = v3_unit(aqr_face_cross(s, f));
-  vec3 d = v3_load(m->field->cross + 3 * (size_t)s->corner[3 * f]);
-  vec3 p = { 0, 0, 0 };
-  for (unsigned k = 0; k < 3; k++)
-    p = v3_madd(p, 1.0 / 3, aqr_point(s, s->corner[3 * f + k]));
-  double along, across;
-  aqr_sizing_at(s, m->field, m->sizing, f, d, &along, &across);
-  both[0] = (seed){ f, p, d, cover_distance * across };
-  both[1] = (seed){ f, p, v3_cross(n, d), cover_distance * along };
-  *least = fmin(along, across);
-}
-
-/* Faces in the order in which they are asked for seeds. */
-typedef struct survey
-{
-  sampler* m;
-  const aqr_index* order;
-  const uint8_t* covered;
-  size_t first, n;             /* of those looked at side by side */
-  uint8_t crowded[look_ahead]; /* neither family has room there */
-} survey;
-
-/* Each plot looks at a share of the faces. Lines only come: what has no room now will have none. */
-static void look_for_room(void* data, size_t begin, size_t end)
-{
-  survey* v = data;
-  const size_t share = (v->n + plots - 1) / plots;
-  for (size_t k = begin; k < end; k++)
-  {
-    plot* x = &v->m->plots[k];
-    for (size_t i = k * share; i < (k + 1) * share && i < v->n && x->status == AQR_OK; i++)
-    {
-      aqr_index f = v->order[v->first + i];
-      bool crowded = !v->covered[f];
-      double least;
-      seed both[2];
-      if (crowded)
-        seed_face(v->m, f, both, &least);
-      for (unsigned j = 0; j < 2 && crowded && x->status == AQR_OK; j++)
-        x->status = aqr_grow_crowded(&x->c, &x->grower, f, both[j].p, both[j].d, both[j].distance, &crowded);
-      v->crowded[i] = crowded;
-    }
-  }
-}
-
-static aqr_status look_farther(survey* v)
-{
-  sampler* m = v->m;
-  v->first += v->n;
-  v->n = m->s->n_faces - v->first < look_ahead ? m->s->n_faces - v->first : look_ahead;
-  if (!aqr_step(m->c, 0.9 * (double)v->first / (double)m->s->n_faces))
-    return AQR_CANCELLED;
-  memset(v->crowded, 0, v->n);
-  if (!m->plots)
-    return AQR_OK;
-  m->c->hooks.parallel_for(m->c->hooks.user, plots, 1, look_for_room, v);
-  return end_turn(m, plots);
-}
-
 /* Seeds both families at every face, best first, that is far from all lines of the family; each seed's line is a parent
  * at once, so that the first seed of a component covers it. */
 static aqr_status cover_surface(sampler* m)
@@ -923,26 +633,26 @@ static aqr_status cover_surface(sampler* m)
   aqr_index* stack = NULL;
   aqr_index* order = AQR_NEW(c, aqr_index, s->n_faces);
   uint8_t* covered = AQR_NEW0(c, uint8_t, s->n_faces);
-  survey v = { .m = m, .order = order, .covered = covered };
   AQR_REQUIRE(order && covered, AQR_OUT_OF_MEMORY);
   AQR_TRY(order_faces(m, order));
   for (size_t i = 0; i < s->n_faces; i++)
   {
     aqr_index f = order[i];
-    double least;
-    seed both[2];
-    if (i == v.first + v.n)
-      AQR_TRY(look_farther(&v));
     if (covered[f])
       continue;
-    seed_face(m, f, both, &least);
+    if (i % 256 == 0)
+      AQR_REQUIRE(aqr_step(c, 0.9 * (double)i / (double)s->n_faces), AQR_CANCELLED);
+    vec3 n = v3_unit(aqr_face_cross(s, f));
+    vec3 d = v3_load(m->field->cross + 3 * (size_t)s->corner[3 * f]);
+    vec3 p = { 0, 0, 0 };
+    for (unsigned k = 0; k < 3; k++)
+      p = v3_madd(p, 1.0 / 3, aqr_point(s, s->corner[3 * f + k]));
+    double along, across;
+    aqr_sizing_at(s, m->field, m->sizing, f, d, &along, &across);
     size_t before = m->lines->n_lines;
-    if (v.crowded[i - v.first])
-      m->n_questions += wants_seeds(m) ? 2 : 0;
-    else
-      for (unsigned k = 0; k < 2; k++)
-        AQR_TRY(sow_one(m, &both[k]));
-    AQR_TRY(cover(m, covered, &stack, &capacity, f, 0.5 * least));
+    AQR_TRY(seed_inside(m, f, p, d, cover_distance * across));
+    AQR_TRY(seed_inside(m, f, p, v3_cross(n, d), cover_distance * along));
+    AQR_TRY(cover(m, covered, &stack, &capacity, f, 0.5 * fmin(along, across)));
     if (m->lines->n_lines > before)
       AQR_TRY(fill_gaps(m, before));
   }
@@ -964,7 +674,6 @@ aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_fiel
   if (status != AQR_OK)
     return status;
   AQR_TRY(aqr_grower_init(c, s, field, sizing, lines, &m.grower));
-  AQR_TRY(make_plots(&m));
   for (size_t i = 0; i < chains->n_chains; i++)
     AQR_TRY(add_chain(&m, chains, &chains->chains[i]));
   count_points(&m);
@@ -976,14 +685,12 @@ aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_fiel
   r->points = m.points;
   report->lines = lines->n_lines;
   report->line_samples = lines->n_samples;
-  report->proximity_queries += m.grower.cell.queries + m.n_questions;
+  report->proximity_queries += m.grower.cell.queries;
 done:
   aqr_grower_free(c, &m.grower);
-  free_plots(&m);
   AQR_DROP(c, m.marks, m.mark_capacity);
   AQR_DROP(c, m.parents, m.parent_capacity);
   AQR_DROP(c, m.places, m.place_capacity);
-  AQR_DROP(c, m.seeds, m.seed_capacity);
   if (status != AQR_OK)
     aqr_lines_free(c, lines);
   return status;

@@ -132,7 +132,7 @@ void aqr_tracer_start(aqr_tracer* t, const aqr_place* at, vec3 direction)
     t->x = cx_madd(t->x, at->bary[i], t->chart.q[i]);
   aqr_tracer_steer(t, direction);
   t->isotropic = false;
-  t->n_samples = t->n_kept = 0;
+  t->n_samples = 0;
   t->travelled = 0;
   t->lost = false;
 }
@@ -242,7 +242,6 @@ static aqr_status record(aqr_context* c, aqr_tracer* t, aqr_index h, double at, 
   if (t->n_samples && t->samples[t->n_samples - 1].edge == edge)
   {
     t->n_samples--;
-    t->n_kept = t->n_samples < t->n_kept ? t->n_samples : t->n_kept;
     return AQR_OK;
   }
   if (!AQR_RESERVE(c, t->samples, t->capacity, t->n_samples + 1))

@@ -35,7 +35,6 @@ typedef struct aqr_tracer
   double travelled; /* along the surface since the start: around a thin tube far more than through space */
   aqr_sample* samples;
   size_t n_samples, capacity;
-  size_t n_kept; /* the fewest samples there have been since this was last set: those have not been taken back */
 } aqr_tracer;
 
 void aqr_tracer_init(aqr_tracer* t, const aqr_surface* s, const aqr_field* field);

@@ -175,11 +175,11 @@ AQR_TEST(the_query_after_the_last_number_still_sees_every_face)
     aqr_probe probe = random_probe(&e, &state, 0.3);
     aqr_near near;
     if (i == 20)
-      cell.inside.turn = UINT32_MAX - 5;
+      cell.query = UINT32_MAX - 5;
     CHECK(aqr_pcell_nearest(&e.c, &cell, &l, &probe, &near) == AQR_OK);
     CHECK(fabs(near.distance - by_brute_force(&e, &l, &probe)) < 1e-12);
   }
-  CHECK(cell.inside.turn < 20);
+  CHECK(cell.query < 20);
   aqr_pcell_free(&e.c, &cell);
   aqr_lines_free(&e.c, &l);
   model_free(&e);

@@ -232,25 +232,4 @@ AQR_TEST(any_number_of_threads_and_every_run_give_the_same_bytes)
   }
 }
 
-/* With threads many seeds grow at once, without any in turn. */
-AQR_TEST(lines_that_grow_side_by_side_are_those_that_grow_in_turn)
-{
-  for (unsigned i = 0; i < 12; i++)
-  {
-    unsigned state = 104729 * i + 5;
-    const char* name;
-    shape m = random_shape(&state, &name);
-    aqr_options o = random_options(&state);
-    size_t threads = 2;
-    aqr_hooks hooks = { .user = &threads, .parallel_for = on_threads };
-    aqr_remesher *in_turn = remesh(&m, &o), *at_once = remesh_with(&hooks, &m, &o);
-    CHECK(hash_results(at_once) == hash_results(in_turn));
-    const aqr_report *a = aqr_remesher_report(in_turn), *b = aqr_remesher_report(at_once);
-    CHECK(a->proximity_queries == b->proximity_queries && a->line_samples == b->line_samples);
-    aqr_remesher_free(in_turn);
-    aqr_remesher_free(at_once);
-    shape_free(&m);
-  }
-}
-
 AQR_TEST_MAIN
