@@ -3,9 +3,8 @@
 set(filter "${CMAKE_CURRENT_LIST_DIR}/vtkAnisotropicQuadRemesher")
 vtk_module_add_module(AnisotropicQuadRemesher::AnisotropicQuadRemesher
   SOURCES "${filter}.cxx" "${CMAKE_CURRENT_LIST_DIR}/AttributeTransfer.cxx" "${CMAKE_CURRENT_LIST_DIR}/InputSurface.cxx"
-    "${CMAKE_CURRENT_LIST_DIR}/ThreadTeam.cxx"
   PRIVATE_HEADERS "${CMAKE_CURRENT_LIST_DIR}/AttributeTransfer.h" "${CMAKE_CURRENT_LIST_DIR}/InputSurface.h"
-    "${CMAKE_CURRENT_LIST_DIR}/ThreadTeam.h" "${CMAKE_CURRENT_LIST_DIR}/ToolkitVersion.h"
+    "${CMAKE_CURRENT_LIST_DIR}/ToolkitVersion.h"
   HEADERS "${filter}.h")
 # The header lies below vtk.module's directory, where the wrappers do not look by themselves.
 vtk_module_include(AnisotropicQuadRemesher::AnisotropicQuadRemesher

@@ -3,7 +3,6 @@
 
 #include "AttributeTransfer.h"
 #include "InputSurface.h"
-#include "ThreadTeam.h"
 #include "ToolkitVersion.h"
 #include "aqr.h"
 
@@ -41,26 +40,19 @@ vtkStandardNewMacro(vtkAnisotropicQuadRemesher);
 namespace
 {
 //------------------------------------------------------------------------------
-// What the kernels' hooks work with during one run.
-struct Run
-{
-  vtkAlgorithm* Self;
-  ThreadTeam Team;
-};
-
-//------------------------------------------------------------------------------
 int ReportProgress(void* user, double fraction, const char* stage)
 {
-  vtkAlgorithm* self = static_cast<Run*>(user)->Self;
+  auto* self = static_cast<vtkAlgorithm*>(user);
   self->SetProgressText(stage);
   self->UpdateProgress(fraction);
   return ShouldAbort(self, 0) ? 0 : 1;
 }
 
 //------------------------------------------------------------------------------
-void ParallelFor(void* user, size_t count, size_t grain, void (*body)(void* data, size_t begin, size_t end), void* data)
+void ParallelFor(void*, size_t count, size_t grain, void (*body)(void* data, size_t begin, size_t end), void* data)
 {
-  static_cast<Run*>(user)->Team.For(count, grain, body, data);
+  vtkSMPTools::For(0, static_cast<vtkIdType>(count), static_cast<vtkIdType>(grain),
+    [=](vtkIdType begin, vtkIdType end) { body(data, static_cast<size_t>(begin), static_cast<size_t>(end)); });
 }
 
 //------------------------------------------------------------------------------
@@ -407,13 +399,12 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
 
   vtkInternals& internals = *this->Internals;
   aqr_status status = AQR_OK;
+  aqr_hooks hooks = {};
+  hooks.user = static_cast<vtkAlgorithm*>(this);
+  hooks.progress = ReportProgress;
+  hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
   const auto run = [&]
   {
-    Run current{ this, ThreadTeam(vtkSMPTools::GetEstimatedNumberOfThreads()) };
-    aqr_hooks hooks = {};
-    hooks.user = &current;
-    hooks.progress = ReportProgress;
-    hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
     status = internals.SetInput(input, hooks);
     if (status == AQR_OK)
     {
