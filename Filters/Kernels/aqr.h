@@ -133,7 +133,7 @@ extern "C"
     double anisotropy;           /**< [0, 1], 1: how far faces are stretched where curvatures differ; 0: squares,
                                     as fine as the larger curvature asks for */
     double adaptivity;           /**< [0, 1], 1: how far density follows curvature; 0: everywhere as for the mean */
-    int pure_quads;              /**< 0 or 1, 0: 1: lines twice as far apart, then every face cut into quads by its
+    int pure_quads;              /**< 0 or 1, 0. 1: lines twice as far apart, then every face cut into quads by its
                                     centre and the middles of its edges */
     int largest_valence;         /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
     int convex_partition;        /**< 0 or 1, 1: concave faces are split (paper 5.2) */
