@@ -6,6 +6,7 @@
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
@@ -107,7 +108,29 @@ SurfaceDigest DigestOf(vtkPolyData* surface)
 }
 
 //------------------------------------------------------------------------------
-aqr_status InputSurface::Give(vtkPolyData* input, aqr_remesher* remesher)
+std::vector<int64_t> LineSegments(vtkPolyData* input, vtkDataArray* chosen)
+{
+  std::vector<int64_t> segments;
+  vtkNew<vtkIdList> line;
+  const vtkIdType first = input->GetNumberOfVerts();
+  for (vtkIdType i = 0; i < input->GetNumberOfLines(); ++i)
+  {
+    if (chosen && chosen->GetComponent(first + i, 0) == 0.0)
+    {
+      continue;
+    }
+    input->GetLines()->GetCellAtId(i, line);
+    for (vtkIdType k = 1; k < line->GetNumberOfIds(); ++k)
+    {
+      segments.push_back(line->GetId(k - 1));
+      segments.push_back(line->GetId(k));
+    }
+  }
+  return segments;
+}
+
+//------------------------------------------------------------------------------
+aqr_status InputSurface::Give(vtkPolyData* input, const std::vector<int64_t>& locked, aqr_remesher* remesher)
 {
   this->Cells.clear();
   this->FirstCell = input->GetNumberOfVerts() + input->GetNumberOfLines();
@@ -145,6 +168,8 @@ aqr_status InputSurface::Give(vtkPolyData* input, aqr_remesher* remesher)
   view.number_of_triangles = static_cast<size_t>(polys->GetNumberOfCells());
   std::vector<int64_t> corners;
   view.triangles = Corners(polys, corners);
+  view.number_of_locked = locked.size() / 2;
+  view.locked = locked.data();
   vtkDataArray* data = input->GetPoints()->GetData();
   vtkNew<vtkDoubleArray> converted;
   if (auto* floats = vtkFloatArray::FastDownCast(data))

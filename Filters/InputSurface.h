@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+class vtkDataArray;
 class vtkPolyData;
 
 // Changes whenever the geometry or the connectivity of a surface may have, but not with its attributes.
@@ -20,6 +21,10 @@ vtkMTimeType GeometryTime(vtkPolyData* surface);
 using SurfaceDigest = std::array<std::uint64_t, 2>;
 SurfaceDigest DigestOf(vtkPolyData* surface);
 
+// The two points of every piece of the lines and polylines; where an array over the cells is given, of those only
+// where it is not zero.
+std::vector<int64_t> LineSegments(vtkPolyData* input, vtkDataArray* chosen);
+
 // Leads from triangles of the kernels back to cells of the input.
 class InputSurface
 {
@@ -29,8 +34,8 @@ public:
     return this->Cells.empty() ? this->FirstCell + static_cast<vtkIdType>(triangle) : this->Cells[triangle];
   }
 
-  // Hands points and triangles to the remesher.
-  aqr_status Give(vtkPolyData* input, aqr_remesher* remesher);
+  // Hands points, triangles and locked edges (see LineSegments) to the remesher.
+  aqr_status Give(vtkPolyData* input, const std::vector<int64_t>& locked, aqr_remesher* remesher);
 
 private:
   std::vector<vtkIdType> Cells; // input cell of a triangle; empty: triangle i is cell FirstCell + i

@@ -125,6 +125,7 @@ struct Slot
   InputSurface Surface;
   vtkSmartPointer<vtkPoints> Points; // kept, so that no other object can take its address
   vtkMTimeType Time = 0;
+  std::vector<int64_t> Locked;
   SurfaceDigest Digest = {};
   unsigned long Turn = 0;
 
@@ -166,14 +167,15 @@ public:
   aqr_status SetInput(vtkPolyData* input, const aqr_hooks& hooks)
   {
     const vtkMTimeType time = GeometryTime(input);
-    const auto unchanged = [&](const Slot& slot) { return slot.Points == input->GetPoints() && slot.Time == time; };
+    const auto unchanged = [&](const Slot& slot)
+    { return slot.Points == input->GetPoints() && slot.Time == time && slot.Locked == this->Locked; };
     auto found = std::find_if(this->Slots.begin(), this->Slots.end(), unchanged);
     SurfaceDigest digest = {};
     if (found == this->Slots.end())
     {
       digest = DigestOf(input);
-      found = std::find_if(
-        this->Slots.begin(), this->Slots.end(), [&](const Slot& slot) { return slot.Points && slot.Digest == digest; });
+      found = std::find_if(this->Slots.begin(), this->Slots.end(),
+        [&](const Slot& slot) { return slot.Points && slot.Digest == digest && slot.Locked == this->Locked; });
     }
     const bool known = found != this->Slots.end();
     if (known)
@@ -199,8 +201,9 @@ public:
     if (status == AQR_OK && !known)
     {
       slot.Points = nullptr;
-      status = slot.Surface.Give(input, slot.Remesher);
+      status = slot.Surface.Give(input, this->Locked, slot.Remesher);
       slot.Digest = digest;
+      slot.Locked = this->Locked;
     }
     if (status == AQR_OK)
     {
@@ -224,6 +227,7 @@ public:
          << ", \"flipped_triangles\": " << report->flipped_triangles
          << ", \"unorientable_edges\": " << report->unorientable_edges
          << ", \"refined_points\": " << report->refined_points << ", \"feature_edges\": " << report->feature_edges
+         << ", \"locked_edges\": " << report->locked_edges << ", \"locked_missed\": " << report->locked_missed
          << ", \"boundary_loops\": " << report->boundary_loops << ", \"components\": " << report->components
          << ", \"lines\": " << report->lines << ", \"line_samples\": " << report->line_samples
          << ", \"proximity_queries\": " << report->proximity_queries << ", \"topology_cuts\": " << report->topology_cuts
@@ -261,7 +265,7 @@ public:
   }
 
   // Sentences about everything that was not as it should be.
-  void CollectWarnings(vtkPolyData* input)
+  void CollectWarnings(vtkPolyData* input, bool lockLines)
   {
     const aqr_report* report = aqr_remesher_report(this->Remesher());
     const std::pair<size_t, const char*> repairs[] = {
@@ -285,11 +289,17 @@ public:
     {
       this->Warnings.push_back("The input was repaired: " + list + ".");
     }
-    if (input->GetNumberOfVerts() + input->GetNumberOfLines() > 0)
+    const vtkIdType lines = lockLines ? 0 : input->GetNumberOfLines();
+    if (input->GetNumberOfVerts() + lines > 0)
     {
-      this->Warnings.push_back(
-        "Vertices and lines of the input were passed over: " + std::to_string(input->GetNumberOfVerts()) + " and " +
-        std::to_string(input->GetNumberOfLines()) + " cells.");
+      this->Warnings.push_back("Vertices and lines of the input were passed over: " +
+                               std::to_string(input->GetNumberOfVerts()) + " and " + std::to_string(lines) + " cells.");
+    }
+    if (report->locked_missed)
+    {
+      this->Warnings.push_back(std::to_string(report->locked_missed) + " of " +
+                               std::to_string(this->Locked.size() / 2) +
+                               " locked edges are no edges of the input's polygons and were passed over.");
     }
     if (report->coarsened_components)
     {
@@ -315,6 +325,7 @@ public:
   unsigned long Turn = 0;
   bool TurnIsUsed = false;
   std::vector<double> DensityScale;
+  std::vector<int64_t> Locked; // the points at the ends of every edge that lines lock
   std::vector<std::string> Warnings;
 };
 
@@ -371,6 +382,37 @@ bool vtkAnisotropicQuadRemesher::ReadDensityArray(vtkInformationVector** inputVe
     }
     this->Internals->DensityScale[static_cast<size_t>(i)] = value;
   }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAnisotropicQuadRemesher::ReadLockedLines(vtkInformationVector** inputVector, vtkPolyData* input)
+{
+  this->Internals->Locked.clear();
+  if (!this->LockLines)
+  {
+    return true;
+  }
+  vtkDataArray* chosen = nullptr;
+  if (this->UseLockArray)
+  {
+    int association = vtkDataObject::FIELD_ASSOCIATION_CELLS;
+    chosen = this->GetInputArrayToProcess(1, inputVector, association);
+    const char* name = this->GetInputArrayInformation(1)->Get(vtkDataObject::FIELD_NAME());
+    if (!chosen)
+    {
+      vtkErrorMacro("The input has no array named \"" << (name ? name : "") << "\" to lock lines by.");
+      return false;
+    }
+    if (association != vtkDataObject::FIELD_ASSOCIATION_CELLS || chosen->GetNumberOfComponents() != 1 ||
+        chosen->GetNumberOfTuples() != input->GetNumberOfCells())
+    {
+      vtkErrorMacro("The array \"" << chosen->GetName() << "\" cannot lock lines: it must be a cell array "
+                                   << "with one component.");
+      return false;
+    }
+  }
+  this->Internals->Locked = LineSegments(input, chosen);
   return true;
 }
 
@@ -560,7 +602,7 @@ int vtkAnisotropicQuadRemesher::RequestData(
     this->SetErrorCode(vtkErrorCode::UserError + AQR_EMPTY_INPUT);
     return 1;
   }
-  if (!this->ReadDensityArray(inputVector, input))
+  if (!this->ReadDensityArray(inputVector, input) || !this->ReadLockedLines(inputVector, input))
   {
     this->SetErrorCode(vtkErrorCode::UserError + AQR_BAD_OPTION);
     return 1;
@@ -592,7 +634,7 @@ int vtkAnisotropicQuadRemesher::RequestData(
     output->GetFieldData()->PassData(input->GetFieldData());
   }
 
-  internals.CollectWarnings(input);
+  internals.CollectWarnings(input, this->LockLines);
   if (!internals.Warnings.empty())
   {
     std::string all;
@@ -636,6 +678,8 @@ void vtkAnisotropicQuadRemesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FeatureLines: " << onOff(this->FeatureLines);
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "BoundaryLines: " << onOff(this->BoundaryLines);
+  os << indent << "LockLines: " << onOff(this->LockLines);
+  os << indent << "UseLockArray: " << onOff(this->UseLockArray);
   os << indent << "LargestSpacing: " << this->LargestSpacing << "\n";
   os << indent << "Anisotropy: " << this->Anisotropy << "\n";
   os << indent << "Adaptivity: " << this->Adaptivity << "\n";

@@ -8,9 +8,9 @@
  * across them allows. It implements M. Marinov and L. Kobbelt, "Direct Anisotropic Quad-Dominant
  * Remeshing", Pacific Graphics 2004, called "the paper" below.
  *
- * The input may hold any polygons and triangle strips; they are triangulated. Vertices and lines
- * are passed over. Defects (degenerate or duplicate triangles, non-manifold edges and points,
- * inconsistent orientation) are repaired on a copy, and one warning says what was done.
+ * The input may hold any polygons and triangle strips; they are triangulated. Vertices are passed
+ * over, and lines but for what LockLines makes of them. Defects (degenerate or duplicate triangles, non-manifold edges
+ * and points, inconsistent orientation) are repaired on a copy, and one warning says what was done.
  *
  * The four output ports:
  * - 0 Remeshed: the quad-dominant surface. Floating-point point arrays of the input are
@@ -196,6 +196,27 @@ public:
 
   ///@{
   /**
+   * Whether the lines and polylines of the input stay edges of the output, as creases do, whatever
+   * the angle of the surface there. Each piece must run along an edge of the input's polygons, between
+   * points of theirs or points at the same places; a warning counts those that do not. Default: off.
+   */
+  vtkSetMacro(LockLines, bool);
+  vtkGetMacro(LockLines, bool);
+  vtkBooleanMacro(LockLines, bool);
+  ///@}
+
+  ///@{
+  /**
+   * With LockLines: of the lines only those where a cell array of the input is not zero. Select it with
+   * SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, name). Default: off.
+   */
+  vtkSetMacro(UseLockArray, bool);
+  vtkGetMacro(UseLockArray, bool);
+  vtkBooleanMacro(UseLockArray, bool);
+  ///@}
+
+  ///@{
+  /**
    * Neighbouring lines are meant to be no farther apart than this fraction of the diagonal of the
    * input's bounding box, however flat the surface. Range [0.0001, 1], default 0.05 (paper, section
    * 3.2).
@@ -320,6 +341,8 @@ protected:
   bool FeatureLines = true;
   double FeatureAngle = 40.0;
   bool BoundaryLines = true;
+  bool LockLines = false;
+  bool UseLockArray = false;
   double LargestSpacing = 0.05;
   double Anisotropy = 1.0;
   double Adaptivity = 1.0;
@@ -339,6 +362,7 @@ private:
   void operator=(const vtkAnisotropicQuadRemesher&) = delete;
 
   bool ReadDensityArray(vtkInformationVector** inputVector, vtkPolyData* input);
+  bool ReadLockedLines(vtkInformationVector** inputVector, vtkPolyData* input);
   int RunKernels(vtkPolyData* input);
   void FillRemeshed(vtkPolyData* input, vtkPolyData* output);
   void FillField(vtkPolyData* input, vtkPolyData* directions, vtkPolyData* confidence);

@@ -77,6 +77,14 @@ def cushion():
     return contour.GetOutput()
 
 
+def belt():
+    """The ring with a belt that winds around it along diagonals of its quads."""
+    surface, lines = grid(160, 60, ring), vtkCellArray()
+    lines.InsertNextCell(121, [i * 60 + (i + 30) % 60 for i in range(121)])
+    surface.SetLines(lines)
+    return surface
+
+
 RING, FLANGE = grid(160, 60, ring), grid(120, 60, flange)
 SHEET, CUSHION = grid(200, 60, sheet, closed=False), cushion()
 PICTURES = {
@@ -92,10 +100,24 @@ PICTURES = {
     "BoundaryLines": (SHEET, [False, True], {"Tolerance": 0.001}),
     "PreserveTopology": (CUSHION, [False, True], {"DensityMode": 1, "TargetNumberOfPoints": 60, "FeatureLines": False}),
     "FeatureLines": (FLANGE, [False, True], {"Tolerance": 0.002}),
+    "LockLines": (belt(), [False, True], {"Tolerance": 0.002}),
     "LargestValence": (RING, [4, 5, 8], {"Tolerance": 0.002}),
     "ConvexPartition": (SHEET, [False, True], {"Tolerance": 0.004, "LargestValence": 12, "BoundaryLines": False}),
     "Seed": (RING, [0, 1, 2], {"Tolerance": 0.002}),
 }
+
+
+def lines_of(surface):
+    """Its lines alone, thick and red."""
+    lines, mapper, actor = vtkPolyData(), vtkPolyDataMapper(), vtkActor()
+    lines.SetPoints(surface.GetPoints())
+    lines.SetLines(surface.GetLines())
+    mapper.SetInputData(lines)
+    mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(0.8, 0, 0)
+    actor.GetProperty().SetLineWidth(3)
+    return actor
 
 
 def picture(name, surface, values, fixed):
@@ -115,6 +137,7 @@ def picture(name, surface, values, fixed):
         actor.SetMapper(mapper)
         actor.GetProperty().EdgeVisibilityOn()
         label = vtkTextActor()
+        remesh.AddObserver("WarningEvent", lambda *_: None)  # of lines passed over, say
         remesh.Update()
         mesh = remesh.GetOutput()
         label.SetInput("%s %s: %d points, %d faces" % (name, value, mesh.GetNumberOfPoints(), mesh.GetNumberOfPolys()))
@@ -125,6 +148,7 @@ def picture(name, surface, values, fixed):
         renderer.SetViewport(i / len(values), 0, (i + 1) / len(values), 1)
         renderer.SetBackground(1, 1, 1)
         renderer.AddActor(actor)
+        renderer.AddActor(lines_of(surface))
         renderer.AddViewProp(label)
         renderer.GetActiveCamera().SetPosition(0, -1.2, 1)
         renderer.GetActiveCamera().SetViewUp(0, 0, 1)

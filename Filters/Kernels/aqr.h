@@ -63,7 +63,7 @@ extern "C"
     AQR_OUT_OF_MEMORY,      /**< the allocator hook returned NULL */
     AQR_EMPTY_INPUT,        /**< no point or no triangle */
     AQR_NON_FINITE_POINT,   /**< a coordinate used by a triangle is NaN or infinite */
-    AQR_INDEX_OUT_OF_RANGE, /**< a triangle names a point that does not exist */
+    AQR_INDEX_OUT_OF_RANGE, /**< a triangle or a locked edge names a point that does not exist */
     AQR_DEGENERATE_INPUT,   /**< no triangle of positive area: all points coincident or collinear */
     AQR_TOO_LARGE,          /**< more triangles than the index type can hold */
     AQR_BAD_OPTION,         /**< an option is NaN or outside its range; see aqr_remesher_message() */
@@ -98,6 +98,9 @@ extern "C"
     const double* points_d;     /**< 3 * number_of_points, used when points_f is NULL */
     size_t number_of_triangles; /**< length of the arrays per triangle */
     const int64_t* triangles;   /**< 3 * number_of_triangles point indices */
+    size_t number_of_locked;    /**< pairs in `locked` */
+    const int64_t* locked;      /**< 2 * number_of_locked point indices, or NULL: edges that become lines as creases do.
+                                   A point is told by where it is, so that it need be no corner of a triangle */
   } aqr_input;
 
   /** What asks for the density of the output. */
@@ -236,6 +239,8 @@ extern "C"
     size_t unorientable_edges;   /**< cut because no orientation agrees across them */
     size_t refined_points;       /**< added to halve edges longer than what lines need (paper 3.2) */
     size_t feature_edges;        /**< input edges on feature lines */
+    size_t locked_edges;         /**< edges of the cleaned input that `locked` of the input asks for */
+    size_t locked_missed;        /**< pairs of `locked` that are no edge of the cleaned input, passed over */
     size_t boundary_loops;       /**< of the cleaned input */
     size_t components;           /**< of the cleaned input */
     size_t lines;                /**< traced */

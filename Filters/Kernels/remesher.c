@@ -55,7 +55,7 @@ const char* aqr_status_string(aqr_status status)
     case AQR_NON_FINITE_POINT:
       return "a point of the input is not finite";
     case AQR_INDEX_OUT_OF_RANGE:
-      return "a triangle of the input names a point that does not exist";
+      return "a triangle or a locked edge of the input names a point that does not exist";
     case AQR_DEGENERATE_INPUT:
       return "the input has no triangle of positive area";
     case AQR_TOO_LARGE:
@@ -216,6 +216,8 @@ static aqr_status run_features(aqr_remesher* r, const aqr_options* o)
   if (o->feature_lines)
     AQR_TRY(aqr_features_detect(c, &r->base, o->feature_angle, shortest_feature, crease, &r->report));
   r->surface_report.feature_edges = r->report.feature_edges;
+  for (size_t h = 0; r->base.locked && h < n; h++)
+    crease[h] |= r->base.locked[h] && !aqr_is_boundary(&r->base, (aqr_index)h);
   bool any = memchr(crease, 1, n) != NULL;
   if (any)
   {

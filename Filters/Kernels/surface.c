@@ -39,6 +39,9 @@ static aqr_status check_input(builder* b)
     if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
       return AQR_NON_FINITE_POINT;
   }
+  for (size_t i = 0; i < 2 * in->number_of_locked; i++)
+    if (in->locked[i] < 0 || (size_t)in->locked[i] >= in->number_of_points)
+      return AQR_INDEX_OUT_OF_RANGE;
   return AQR_OK;
 }
 
@@ -69,7 +72,17 @@ static bool same_point(vec3 a, vec3 b)
   return !(a.x < b.x || a.x > b.x || a.y < b.y || a.y > b.y || a.z < b.z || a.z > b.z);
 }
 
-/* Joins points with the same coordinates to the first of them; points that no triangle uses stay AQR_NONE. */
+/* The place in the table of a point with the same coordinates, or the free one where it would be. */
+static size_t find_place(const aqr_input* in, const aqr_index* table, size_t size, vec3 p)
+{
+  size_t at = hash_point(p) & (size - 1);
+  while (table[at] != AQR_NONE && !same_point(input_point(in, table[at]), p))
+    at = (at + 1) & (size - 1);
+  return at;
+}
+
+/* Joins points with the same coordinates to the first of them; points that neither a triangle nor a locked edge uses
+ * stay AQR_NONE. */
 static aqr_status weld_points(builder* b)
 {
   const aqr_input* in = b->in;
@@ -89,10 +102,7 @@ static aqr_status weld_points(builder* b)
     if (b->weld[v] != AQR_NONE)
       continue;
     used++;
-    vec3 p = input_point(in, v);
-    size_t at = hash_point(p) & (size - 1);
-    while (table[at] != AQR_NONE && !same_point(input_point(in, table[at]), p))
-      at = (at + 1) & (size - 1);
+    size_t at = find_place(in, table, size, input_point(in, v));
     if (table[at] == AQR_NONE)
       table[at] = v;
     else
@@ -100,6 +110,13 @@ static aqr_status weld_points(builder* b)
     b->weld[v] = table[at];
   }
   b->report->unused_points = n - used;
+  for (size_t i = 0; i < 2 * in->number_of_locked; i++)
+  {
+    aqr_index v = (aqr_index)in->locked[i];
+    vec3 p = input_point(in, v);
+    if (b->weld[v] == AQR_NONE && isfinite(p.x) && isfinite(p.y) && isfinite(p.z))
+      b->weld[v] = table[find_place(in, table, size, p)];
+  }
   AQR_DROP(b->c, table, size);
   return AQR_OK;
 }
@@ -522,6 +539,8 @@ aqr_status aqr_surface_build(
   for (size_t i = 0; i < s->n_points; i++)
     s->clean[i] = (aqr_index)i;
   s->n_clean = s->n_points;
+  if (input->number_of_locked)
+    AQR_TRY(aqr_surface_lock(c, input, b.weld, s, report));
 done:
   AQR_DROP(c, b.weld, input->number_of_points);
   if (status != AQR_OK)

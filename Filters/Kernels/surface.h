@@ -26,6 +26,8 @@ typedef struct aqr_surface
                          share one */
   aqr_origin* origin; /* n_clean: where the cleaned point lies on the input */
   aqr_index* source;  /* n_faces: input triangle */
+  uint8_t* locked;    /* 3 * n_faces: 1 where the half-edge is to be a crease whatever its angle; NULL: none. Only the
+                         cleaned surface has it, cuts and copies do not */
   size_t faces_held, points_held, origins_held; /* what the arrays per face, per point, and `origin` have room for */
   vec3 centre;                                  /* input = centre + diagonal * point */
   double diagonal;
@@ -98,6 +100,11 @@ aqr_status aqr_surface_build(
 
 /* Numbers faces and points along a space-filling curve (surface_order.c), before adjacency is known. */
 aqr_status aqr_surface_arrange(aqr_context* c, aqr_surface* s);
+
+/* Finds the edges that input->locked asks for on the refined surface (surface_lock.c). weld: per input point the one it
+ * was joined to, as in the origins. */
+aqr_status aqr_surface_lock(
+  aqr_context* c, const aqr_input* input, const aqr_index* weld, aqr_surface* s, aqr_report* report);
 
 /* The input's order: ranks of the faces by input triangle, and of the cleaned points by input point with the points
  * added by refinement behind them. */

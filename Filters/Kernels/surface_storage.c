@@ -68,6 +68,7 @@ void aqr_surface_free(aqr_context* c, aqr_surface* s)
   AQR_DROP(c, s->corner, 3 * s->faces_held);
   AQR_DROP(c, s->twin, 3 * s->faces_held);
   AQR_DROP(c, s->source, s->faces_held);
+  AQR_DROP(c, s->locked, 3 * s->n_faces);
   AQR_DROP(c, s->points, 3 * s->points_held);
   AQR_DROP(c, s->fan, s->points_held);
   AQR_DROP(c, s->clean, s->points_held);

@@ -33,7 +33,7 @@ AQR_TEST(a_fin_inside_a_sheet_leaves_no_slit)
     -1, 1, 0 };
   const int64_t triangles[] = { 0, 1, 2, 1, 5, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1, 4, 7, 1, 3, 8, 4, 2, 9, 3, 1, 2, 6, 0, 1,
     6 };
-  aqr_input input = { 10, NULL, points, 9, triangles };
+  aqr_input input = { .number_of_points = 10, .points_d = points, .number_of_triangles = 9, .triangles = triangles };
   aqr_options o = aqr_default_options();
   o.tolerance = 0.01;
   CHECK(!fault_of(&input, &o));
@@ -46,7 +46,7 @@ AQR_TEST(points_on_a_fold_have_a_normal)
 {
   const double points[] = { 0, 0, 0, 1, 0, 0, 0.5, 1, 0, 0.5, 1, 0.0000001, 0.2, 1, 0, 0.8, 1, -0.0000001 };
   const int64_t triangles[] = { 0, 1, 2, 1, 0, 3, 0, 2, 4, 1, 5, 2 };
-  aqr_input input = { 6, NULL, points, 4, triangles };
+  aqr_input input = { .number_of_points = 6, .points_d = points, .number_of_triangles = 4, .triangles = triangles };
   for (int features = 0; features < 2; features++)
   {
     aqr_options o = aqr_default_options();
@@ -117,7 +117,7 @@ AQR_TEST(lines_that_end_at_one_place_of_a_crease_keep_their_order)
 {
   const double points[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0.46, 0, 0, 0.6, 0, 0, 3, 0, 0, 4, 0, 0, 3, 0.4, 0 };
   const int64_t triangles[] = { 4, 1, 2, 0, 1, 3, 1, 4, 3, 0, 1, 2, 5, 6, 7 };
-  aqr_input input = { 8, NULL, points, 5, triangles };
+  aqr_input input = { .number_of_points = 8, .points_d = points, .number_of_triangles = 5, .triangles = triangles };
   aqr_options o = aqr_default_options();
   CHECK(!fault_of(&input, &o));
 }

@@ -429,7 +429,7 @@ AQR_TEST(every_unusable_input_has_its_status)
 {
   double points[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
   int64_t triangle[] = { 0, 1, 2 };
-  aqr_input input = { 3, NULL, points, 1, triangle };
+  aqr_input input = { .number_of_points = 3, .points_d = points, .number_of_triangles = 1, .triangles = triangle };
   CHECK(status_of_input(&input) == AQR_OK);
   input.number_of_triangles = 0;
   CHECK(status_of_input(&input) == AQR_EMPTY_INPUT);

@@ -27,7 +27,10 @@ static inline void shape_free(shape* m)
 
 static inline aqr_input shape_input(const shape* m)
 {
-  return (aqr_input){ m->n_points, NULL, m->points, m->n_triangles, m->triangles };
+  return (aqr_input){ .number_of_points = m->n_points,
+    .points_d = m->points,
+    .number_of_triangles = m->n_triangles,
+    .triangles = m->triangles };
 }
 
 /* Uniform in [0, 1). */

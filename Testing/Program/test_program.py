@@ -333,6 +333,35 @@ class Program(unittest.TestCase):
         ):
             mesh(*options)
 
+    def test_lines_of_the_input_become_edges(self):
+        around, across = 80, 40
+        with open(self.torus) as f:
+            rows = [line.split() for line in f][9:]
+        points, faces = rows[: around * across], [row[1:] for row in rows[around * across :]]
+        circle = [i % around * across for i in range(around + 1)]
+        lines = [circle, [3, 3 + across // 2]]  # the second is no edge
+        name = self.write("lines.vtk", "\n".join(
+            ["# vtk DataFile Version 3.0", "torus", "ASCII", "DATASET POLYDATA", "POINTS %d double" % len(points)]
+            + [" ".join(p) for p in points]
+            + ["LINES %d %d" % (len(lines), sum(map(len, lines)) + len(lines))]
+            + ["%d %s" % (len(line), " ".join(map(str, line))) for line in lines]
+            + ["POLYGONS %d %d" % (len(faces), 4 * len(faces))] + ["3 " + " ".join(face) for face in faces]
+            + ["CELL_DATA %d" % (len(lines) + len(faces)), "SCALARS chosen int 1", "LOOKUP_TABLE default", "1", "0"]
+            + ["0"] * len(faces)) + "\n")
+        report = self.path("report.json")
+        for options, locked, warning in (
+            ([], False, "2 cells"), (["--lock-lines"], True, "1 of 81"), (["--lock-array", "chosen"], True, "")):
+            run = self.run_program(name, self.path("out.obj"), "--tolerance", "0.003", "--report", report, *options)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn(warning, run.stderr)
+            self.assertEqual(run.stderr == "", warning == "")
+            with open(report) as f:
+                self.assertEqual(json.load(f)["counts"]["locked_edges"] >= around, locked)
+            with open(self.path("out.obj")) as f:
+                corners = [tuple(map(float, line.split()[1:])) for line in f if line.startswith("v ")]
+            on = [p for p in corners if abs(p[2]) < 1e-6 and math.hypot(*p[:2]) > 3.9]
+            self.assertEqual(len(on) > 8, locked, len(on))
+
     def test_no_network_is_used(self):
         run = self.run_program(self.torus, self.path("out.vtp"), LD_PRELOAD=NO_NETWORK)
         self.assertEqual((run.returncode, run.stderr), (0, ""))

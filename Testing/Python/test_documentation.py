@@ -47,7 +47,7 @@ class Documentation(unittest.TestCase):
     def test_every_parameter_that_shapes_the_mesh_has_a_picture(self):
         guide = read("docs/user-guide.md")
         # The first is what the next two are; the others tell of ports and threads, or need an array.
-        unseen = {"DensityMode", "UseDensityArray", "FeatureAngle", "NumberOfThreads", "GenerateDirections",
+        unseen = {"DensityMode", "UseDensityArray", "UseLockArray", "FeatureAngle", "NumberOfThreads", "GenerateDirections",
                   "GenerateConfidence", "GenerateLines"}
         for name in set(PROPERTIES) - unseen:
             self.assertIn("(images/%s.png)" % name, guide)

@@ -87,6 +87,16 @@ class Plugin(unittest.TestCase):
         self.assertLess(abs(even - 0.5), 0.2)
         self.assertGreater(share_above(remesh), even + 0.1)
 
+    def test_lock_array_is_chosen_from_the_cell_arrays(self):
+        numbered = pv.GenerateIds(Input=self.sphere, CellIdsArrayName="number")
+        remesh = pv.AnisotropicQuadRemesher(Input=numbered, Tolerance=0.002, LockLines=1, UseLockArray=1)
+        numbered.UpdatePipeline()
+        domain = remesh.SMProxy.GetProperty("LockArray").FindDomain("vtkSMArrayListDomain")
+        self.assertEqual([domain.GetString(i) for i in range(domain.GetNumberOfStrings())], ["number"])
+        remesh.LockArray = ["CELLS", "number"]
+        remesh.UpdatePipeline()
+        self.assertGreater(remesh[0].GetDataInformation().GetNumberOfPoints(), 100)
+
     def test_blocks_are_remeshed_one_by_one_on_all_ports(self):
         far = pv.Sphere(Center=[3, 0, 0], ThetaResolution=40, PhiResolution=30)
         blocks = pv.GroupDatasets(Input=[self.sphere, far])

@@ -30,7 +30,9 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     triangles[i] = whole ? take_8(&b) : take_16(&b);
   if (points && triangles)
   {
-    aqr_input input = { n_points, points, NULL, n_triangles, triangles };
+    aqr_input input = {
+      .number_of_points = n_points, .points_f = points, .number_of_triangles = n_triangles, .triangles = triangles
+    };
     aqr_status status;
     const char* fault = examine(&input, &options, &status);
     if (fault)

@@ -111,6 +111,15 @@ std::vector<Option> AllOptions(Filter* filter, Options& options)
       "degrees by which two faces depart from flat before their edge counts as a crease"),
     AQR_SWITCH("--no-features", FeatureLines, Off, "do not keep creases; default: they become edges"),
     AQR_SWITCH("--no-boundary", BoundaryLines, Off, "do not follow the boundary; default: it becomes edges"),
+    AQR_SWITCH("--lock-lines", LockLines, On,
+      "keep the lines of INPUT, which must run along its edges, as edges; default: they are passed over"),
+    { "--lock-array", "NAME", "keep those lines only where this cell array of INPUT is not zero; default: all",
+      [filter](const std::string& value)
+      {
+        filter->LockLinesOn();
+        filter->UseLockArrayOn();
+        filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, value.c_str());
+      } },
     AQR_NUMBER("--largest-valence", "N", LargestValence, true, "most corners a face may have"),
     AQR_SWITCH("--no-convex", ConvexPartition, Off, "leave concave faces as they are; default: they are split"),
     AQR_SWITCH("--no-topology", PreserveTopology, Off,
