@@ -230,7 +230,8 @@ public:
          << ", \"locked_edges\": " << report->locked_edges << ", \"locked_missed\": " << report->locked_missed
          << ", \"boundary_loops\": " << report->boundary_loops << ", \"components\": " << report->components
          << ", \"lines\": " << report->lines << ", \"line_samples\": " << report->line_samples
-         << ", \"proximity_queries\": " << report->proximity_queries << ", \"topology_cuts\": " << report->topology_cuts
+         << ", \"proximity_queries\": " << report->proximity_queries << ", \"faces_crossed\": " << report->faces_crossed
+         << ", \"bounded_points\": " << report->bounded_points << ", \"topology_cuts\": " << report->topology_cuts
          << ", \"coarsened_components\": " << report->coarsened_components
          << ", \"topology_lost\": " << report->topology_lost << ", \"target_missed\": " << report->target_missed
          << ", \"tolerance\": " << report->tolerance;
@@ -311,6 +312,12 @@ public:
       this->Warnings.push_back("No attempt kept the input's topology: the output has another Euler number.");
     }
     const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher());
+    if (report->bounded_points)
+    {
+      this->Warnings.push_back("The largest spacing is smaller than the input can carry at " +
+                               std::to_string(report->bounded_points) +
+                               " of its points: lines stay a quarter of the distance of the points apart there.");
+    }
     if (report->target_missed && mesh)
     {
       this->Warnings.push_back("The target number of points could not be met within 5 percent: the boundary, the "

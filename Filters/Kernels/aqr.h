@@ -246,6 +246,9 @@ extern "C"
     size_t lines;                /**< traced */
     size_t line_samples;         /**< edge crossings of all lines */
     size_t proximity_queries;    /**< questions for the nearest other line */
+    size_t faces_crossed;        /**< by all growing lines, those not kept too: the work of tracing */
+    size_t bounded_points;       /**< of the cleaned input, where largest_spacing asks for lines nearer than the input
+                                    can carry and is not met; 0 where target_points are asked for */
     size_t topology_cuts;        /**< lines added so that every region is a disk */
     size_t coarsened_components; /**< components that carried no lines and were decimated instead */
     size_t topology_lost;        /**< 1 when preserve_topology was asked for and no attempt kept the Euler number */

@@ -565,6 +565,7 @@ static aqr_status meet_tolerance(aqr_remesher* r, const aqr_options* o)
   aqr_status status = aqr_sizing_set(&r->context, r->surface, o->tolerance, &r->sizing);
   if (status == AQR_OK)
     status = attempt(r, o, o->tolerance, 0, &reached);
+  r->report.bounded_points = aqr_sizing_bounded(&r->sizing);
   for (int i = 1; status == AQR_OK && i < most_retries && o->preserve_topology && !keeps_topology(r); i++)
   {
     tolerance *= retry;

@@ -18,7 +18,9 @@ enum
   most_passes = 12,   /* at reaching the number of points asked for */
   most_on_edge = 8,   /* spacings along an edge of a chain, however small the tolerance */
   most_failures = 50, /* growths that come to nothing, per line kept ... */
-  free_failures = 64  /* ... and these many lines more: the bound of the work along threads without area */
+  free_failures = 64, /* ... and these many lines more: the bound of the work along threads without area */
+  most_in_vain = 8    /* faces crossed by growths that came to nothing, per face crossed by the lines kept and per
+                         face of the surface: among spikes a growth can cross thousands */
 };
 
 static const double seed_distance = 0.6;  /* of the spacing: nearer than this to a line of its family no line begins */
@@ -62,6 +64,8 @@ typedef struct sampler
   double* places; /* marks of the parent being asked, in order */
   size_t n_places, place_capacity;
   size_t n_failed; /* growths that came to nothing */
+  size_t in_vain;  /* faces that these crossed */
+  size_t crossed;  /* faces that all growths before this one crossed */
   double points;   /* expected of the lines: their crossings, and on chains their ends or the chain's own spacing */
   double goal;     /* no further seeds once as many are expected */
 } sampler;
@@ -242,16 +246,17 @@ static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
   return (double)samples[line->count - 1].sigma > (turns ? least_turning_length : least_length);
 }
 
-static aqr_status cross_seams(sampler* m, aqr_index from);
-
 /* Commits the grower's line; *id is AQR_NONE where it was not worth keeping. */
 static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
 {
   aqr_grower* g = &m->grower;
+  size_t crossed = g->tracer.crossed - m->crossed;
+  m->crossed = g->tracer.crossed;
   *id = AQR_NONE;
   if (!worth_keeping(&g->line, g->samples))
   {
     m->n_failed++;
+    m->in_vain += crossed;
     return AQR_OK;
   }
   *id = (aqr_index)m->lines->n_lines;
@@ -308,12 +313,20 @@ static aqr_status cross_seams(sampler* m, aqr_index from)
   return AQR_OK;
 }
 
+/* Whether enough has been tried: nothing more will come of it that is worth the work. */
+static bool gives_up(const sampler* m)
+{
+  size_t kept = m->crossed - m->in_vain;
+  return m->n_failed > most_failures * (m->lines->n_lines + free_failures) ||
+         m->in_vain > most_in_vain * (kept + m->s->n_faces);
+}
+
 /* A seed inside face f, for a line along `d`, at least `distance` from its family. */
 static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double distance)
 {
   bool allowed;
   aqr_index id = AQR_NONE;
-  if (m->points >= m->goal || m->n_failed > most_failures * (m->lines->n_lines + free_failures))
+  if (m->points >= m->goal || gives_up(m))
     return AQR_OK;
   aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
   if (status != AQR_OK || !allowed)
@@ -686,6 +699,7 @@ aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_fiel
   report->lines = lines->n_lines;
   report->line_samples = lines->n_samples;
   report->proximity_queries += m.grower.cell.queries;
+  report->faces_crossed += m.crossed;
 done:
   aqr_grower_free(c, &m.grower);
   AQR_DROP(c, m.marks, m.mark_capacity);

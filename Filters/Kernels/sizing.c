@@ -172,6 +172,14 @@ aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance
   return fill(c, s, tolerance, sizing);
 }
 
+size_t aqr_sizing_bounded(const aqr_sizing* sizing)
+{
+  size_t n = 0;
+  for (size_t v = 0; v < sizing->n_points; v++)
+    n += sizing->largest * sizing->largest < densest * densest * (double)sizing->area[v];
+  return n;
+}
+
 double aqr_sizing_predict(const aqr_sizing* sizing, double tolerance)
 {
   double points = 0;

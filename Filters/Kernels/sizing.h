@@ -37,6 +37,9 @@ void aqr_sizing_free(aqr_context* c, aqr_sizing* sizing);
 /* Fills `spacing` for a tolerance (in scaled units). */
 aqr_status aqr_sizing_set(aqr_context* c, const aqr_surface* s, double tolerance, aqr_sizing* sizing);
 
+/* Points at which even the largest spacing is less than the input can carry. */
+size_t aqr_sizing_bounded(const aqr_sizing* sizing);
+
 /* Number of crossings that lines at the spacings for a tolerance would have: the integral of 1 / (product of the
  * spacings). */
 double aqr_sizing_predict(const aqr_sizing* sizing, double tolerance);

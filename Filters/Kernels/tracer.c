@@ -372,6 +372,7 @@ static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double leng
   for (int i = 0; i < most; i++)
   {
     double side[3], at = 0.5;
+    t->crossed++;
     unsigned k = vertex < 3 ? opposite_edge(&t->chart, vertex, d, &at) : exit_edge(&t->chart, t->x, d, side);
     if (k == 3) /* beside its triangle by rounding: a little towards the middle it sees an edge again */
     {

@@ -32,6 +32,7 @@ typedef struct aqr_tracer
   aqr_complex x, d; /* position and unit direction in the chart */
   bool isotropic;   /* the last step followed the trusted direction, not the field */
   bool lost;        /* among faces so thin that no move came to its end */
+  size_t crossed;   /* faces entered by all moves and trial moves, from any start: the work done */
   double travelled; /* along the surface since the start: around a thin tube far more than through space */
   aqr_sample* samples;
   size_t n_samples, capacity;

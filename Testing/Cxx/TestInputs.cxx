@@ -135,5 +135,12 @@ int TestInputs(int, char*[])
   CHECK(messages.Warnings == 1 && messages.Errors == 0);
   CHECK(messages.Says("1 degenerate") && messages.Says("1 duplicate") && messages.Says("1 triangles turned"));
   CHECK(Alike(filter->GetOutput(), expected));
+
+  // A spacing far below what the input can carry is not met, and that is said.
+  messages.Clear();
+  filter->SetInputData(torus);
+  filter->SetLargestSpacing(1e-4);
+  filter->Update();
+  CHECK(messages.Warnings == 1 && messages.Errors == 0 && messages.Says("largest spacing"));
   return checks.ExitCode();
 }

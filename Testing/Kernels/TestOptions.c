@@ -47,6 +47,24 @@ AQR_TEST(the_number_of_points_falls_as_the_tolerance_grows)
   shape_free(&m);
 }
 
+/* A spacing that a coarse flat input cannot carry was left without a word. */
+AQR_TEST(a_largest_spacing_that_is_not_met_is_reported)
+{
+  shape m = shape_grid(12, 12, false, false, 0, 1, place_on_cylinder);
+  aqr_options o = aqr_default_options();
+  o.curvature_radius = 0;
+  aqr_remesher* r = remesh(&m, &o);
+  CHECK(aqr_remesher_report(r)->bounded_points == 0);
+  o.largest_spacing = 1e-4;
+  CHECK(again(r, o) == AQR_OK);
+  CHECK(aqr_remesher_report(r)->bounded_points == aqr_remesher_field(r)->number_of_points);
+  o.density = AQR_DENSITY_POINTS;
+  CHECK(again(r, o) == AQR_OK);
+  CHECK(aqr_remesher_report(r)->bounded_points == 0);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
 AQR_TEST(targets_are_met_within_five_percent)
 {
   shape shapes[] = { shape_torus(24, 2), shape_plate(2, 7, 12, 3), shape_ellipsoid(22, 0.3, 4, v3(1, 0.6, 0.4)) };

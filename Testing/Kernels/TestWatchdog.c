@@ -43,7 +43,8 @@ static int allow(void* user, double fraction, const char* stage)
   return n->elements + n->bytes / element_bytes < most_work;
 }
 
-/* Elements of all loops that may be threaded, steps and queries of lines, and memory in units of an element's. */
+/* Elements of all loops that may be threaded, faces crossed by lines and their queries, and memory in units of an
+ * element's. */
 static cost cost_of(const aqr_input* input, const aqr_options* o)
 {
   counter n = { 0, 0 };
@@ -60,7 +61,7 @@ static cost cost_of(const aqr_input* input, const aqr_options* o)
   {
     const aqr_report* report = aqr_remesher_report(r);
     spent.work =
-      n.elements + n.bytes / element_bytes + (double)report->proximity_queries + (double)report->line_samples;
+      n.elements + n.bytes / element_bytes + (double)report->proximity_queries + (double)report->faces_crossed;
     spent.points = (double)aqr_remesher_field(r)->number_of_points;
     spent.mesh_points = (double)aqr_remesher_mesh(r)->number_of_points;
   }
@@ -120,7 +121,7 @@ AQR_TEST(defects_never_cost_ten_times_the_work_on_a_clean_surface)
     for (size_t i = 0; i < size; i++)
       data[i] = next_byte(&state);
     bytes b = { data, size };
-    shape m = mutate_base(k / 2);
+    shape m = mutate_surface(k / 2 % 8, k / 16);
     CHECK(mutate(&m, &b));
     size_t class = m.n_triangles / class_width;
     CHECK(class < 16);
@@ -179,7 +180,7 @@ AQR_TEST(a_number_of_points_costs_no_more_under_any_density)
 {
   for (unsigned base = 2; base < 8; base += 4)
   {
-    shape m = mutate_base(base);
+    shape m = mutate_surface(base, 0);
     aqr_input input = shape_input(&m);
     double* factor = malloc(m.n_points * sizeof *factor);
     aqr_options o = aqr_default_options();
@@ -217,6 +218,30 @@ AQR_TEST(ribbons_without_area_cost_no_more_than_wide_ones)
     wide = wide > 0 ? wide : work;
     CHECK_BELOW(work / wide, 5);
     shape_free(&m);
+  }
+}
+
+/* Lines crossed thousands of faces of needles without getting anywhere, from each of thousands of seeds. */
+AQR_TEST(a_point_far_away_costs_no_more_than_a_clean_strip)
+{
+  aqr_options o = aqr_default_options();
+  o.density = AQR_DENSITY_POINTS;
+  o.target_points = 100;
+  o.feature_lines = 0;
+  for (size_t n = 4; n <= 36; n *= 3)
+  {
+    double clean = 0;
+    for (int far = 0; far < 3; far++)
+    {
+      shape m = shape_grid(29, n / 2, true, false, 0, 1, place_on_cylinder);
+      for (int k = 0; k < 3 && far; k++)
+        m.points[3 * (m.n_points / 2) + (size_t)k] += far == 1 ? 1e6 : 1e9;
+      aqr_input input = shape_input(&m);
+      double work = work_on(&input, &o);
+      clean = far ? clean : work;
+      CHECK_BELOW(work / clean, 10);
+      shape_free(&m);
+    }
   }
 }
 

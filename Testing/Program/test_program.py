@@ -161,6 +161,12 @@ class Program(unittest.TestCase):
         self.assertIn("warning", run.stderr)
         self.assertIn("1 degenerate", run.stderr)
 
+    def test_a_spacing_that_the_input_cannot_carry_is_warned_of(self):
+        write_ply(self.path("flat.ply"), [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (1, 3, 2)])
+        for spacing, warned in (("0.0001", True), ("0.1", False)):
+            run = self.run_program(self.path("flat.ply"), self.path("out.obj"), "--largest-spacing", spacing)
+            self.assertEqual((run.returncode, "largest spacing" in run.stderr), (0, warned), run.stderr)
+
     def test_wrong_usage_is_refused(self):
         out = self.path("out.vtp")
         self.expect_failure(2, ["INPUT"])
