@@ -35,8 +35,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   o.feature_lines = take_8(&b) % 2;
   o.feature_angle = take_value(&b, 1, 180);
   o.boundary_lines = take_8(&b) % 2;
-  o.anisotropy = take_value(&b, 0, 1);
-  o.adaptivity = take_value(&b, 0, 1);
+  o.anisotropy = take_value(&b, 1, 0);
+  o.adaptivity = take_value(&b, 1, 0);
   o.pure_quads = take_8(&b) % 2;
   o.largest_spacing = fmax(0.005, take_value(&b, 1, 0.01));
   o.largest_valence = (int)fmin(100, fmax(0, take_value(&b, 4, 64)));

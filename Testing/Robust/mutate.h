@@ -17,10 +17,9 @@ static inline vec3 place_on_saddle(double u, double v)
   return v3(x, y, x * x * x - 3 * x * y * y);
 }
 
-static inline shape mutate_base(unsigned which)
+static inline shape mutate_surface(unsigned which, unsigned seed)
 {
-  unsigned seed = which / 8;
-  switch (which % 8)
+  switch (which)
   {
     case 0:
       return shape_ellipsoid(2 + seed % 4, 0.2, seed, v3(1, 1, 1));
@@ -39,6 +38,30 @@ static inline shape mutate_base(unsigned which)
     default:
       return shape_grid(3, 1 + seed % 3, true, false, 0, seed, place_on_cylinder);
   }
+}
+
+/* A triangle far off: edges longer than a share of the diagonal are halved, so that the surface keeps its few triangles
+ * and a run costs a twentieth. Every eighth surface has none. */
+static inline shape mutate_base(unsigned which)
+{
+  shape m = mutate_surface(which % 8, which / 8 % 4);
+  double far[] = { 6, 3, 10, 2, 4, 1.5, 5 };
+  if (which / 32 == 7 || m.n_points == 0)
+    return m;
+  double* points = realloc(m.points, 3 * (m.n_points + 3) * sizeof *points);
+  if (points)
+    m.points = points;
+  int64_t* triangles = realloc(m.triangles, 3 * (m.n_triangles + 1) * sizeof *triangles);
+  if (triangles)
+    m.triangles = triangles;
+  for (size_t k = 0; points && triangles && k < 3; k++)
+  {
+    double d = far[which / 32];
+    v3_store(m.points + 3 * m.n_points, v3(d + 0.1 * (k == 1), d + 0.1 * (k == 2), d));
+    m.triangles[3 * m.n_triangles + k] = (int64_t)m.n_points++;
+  }
+  m.n_triangles += points && triangles;
+  return m;
 }
 
 /* One change to the mesh; room for one more point and three more triangles must be there. */
