@@ -234,7 +234,9 @@ public:
          << ", \"bounded_points\": " << report->bounded_points << ", \"topology_cuts\": " << report->topology_cuts
          << ", \"coarsened_components\": " << report->coarsened_components
          << ", \"topology_lost\": " << report->topology_lost << ", \"target_missed\": " << report->target_missed
-         << ", \"tolerance\": " << report->tolerance;
+         << ", \"tolerance\": " << report->tolerance << ", \"feature_rms\": " << report->feature_rms
+         << ", \"feature_max\": " << report->feature_max << ", \"boundary_rms\": " << report->boundary_rms
+         << ", \"boundary_max\": " << report->boundary_max;
     if (const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher()))
     {
       size_t sides[3] = { 0, 0, 0 };

@@ -318,8 +318,8 @@ public:
 
   /**
    * What the last execution found and did, as a JSON object: `counts` (repairs of the input, lines,
-   * output elements), `warnings` (sentences), and `stages`, each with its seconds, its peak of
-   * memory in bytes and whether the cached result served.
+   * output elements, distances of creases and borders from the output's edges), `warnings` (sentences), and `stages`,
+   * each with its seconds, its peak of memory in bytes and whether the cached result served.
    */
   std::string GetReport() const;
 

@@ -254,6 +254,10 @@ extern "C"
     size_t topology_lost;        /**< 1 when preserve_topology was asked for and no attempt kept the Euler number */
     size_t target_missed;        /**< 1 when target_points could not be met within 5 % */
     double tolerance;            /**< used, as a fraction of the diagonal */
+    double feature_rms;          /**< distance of creases and locked edges from the output's edges: root mean square */
+    double feature_max;          /**< ... and largest, as fractions of the diagonal; 0 where there are none */
+    double boundary_rms;         /**< the same of the boundary */
+    double boundary_max;         /**< the same of the boundary */
   } aqr_report;
 
   /** Seconds and memory of one stage of the last run. */

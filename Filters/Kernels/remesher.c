@@ -2,6 +2,7 @@
 /* The pipeline: surface -> features -> curvature -> direction field -> sizing -> lines -> network -> faces -> fit. */
 #include "coarsen.h"
 #include "faces.h"
+#include "feature_error.h"
 #include "fit.h"
 #include "network.h"
 #include "pipeline.h"
@@ -597,7 +598,14 @@ static aqr_status show_lines(aqr_remesher* r)
 
 static aqr_status run_results(aqr_remesher* r)
 {
-  aqr_status status = aqr_results_mesh(r);
+  aqr_distance features, boundary;
+  aqr_status status = aqr_feature_error(&r->context, r->surface, &r->chains, &r->polygons, &features, &boundary);
+  r->report.feature_rms = features.rms;
+  r->report.feature_max = features.largest;
+  r->report.boundary_rms = boundary.rms;
+  r->report.boundary_max = boundary.largest;
+  if (status == AQR_OK)
+    status = aqr_results_mesh(r);
   aqr_polygon_mesh_free(&r->context, &r->polygons);
   if (status == AQR_OK && !r->field_view.points)
     status = aqr_results_field(r);

@@ -368,6 +368,17 @@ class Program(unittest.TestCase):
             on = [p for p in corners if abs(p[2]) < 1e-6 and math.hypot(*p[:2]) > 3.9]
             self.assertEqual(len(on) > 8, locked, len(on))
 
+    def test_summary_is_one_line_with_the_figures_of_the_report(self):
+        run = self.run_program(self.torus, self.path("out.obj"), "--summary", "--report", self.path("report.json"))
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        with open(self.path("report.json")) as f:
+            counts = json.load(f)["counts"]
+        points, faces = self.faces_of(self.path("out.obj"))
+        self.assertRegex(run.stdout, r"^%d points, %d faces, \d+ quads, tolerance 0\.0005, creases off by 0 " % (
+            points, len(faces)))
+        self.assertEqual(run.stdout.count("\n"), 1)
+        self.assertEqual([counts[k] for k in ("feature_rms", "feature_max", "boundary_rms", "boundary_max")], [0] * 4)
+
     def test_no_network_is_used(self):
         run = self.run_program(self.torus, self.path("out.vtp"), LD_PRELOAD=NO_NETWORK)
         self.assertEqual((run.returncode, run.stderr), (0, ""))

@@ -136,6 +136,10 @@ std::vector<Option> AllOptions(Filter* filter, Options& options)
     { "--report", "FILE",
       "also write counts, warnings, and the seconds and peak memory (bytes) of every stage, as .json; default: none",
       path(options.Report) },
+    { "--summary", "",
+      "also print the points, faces, quads and tolerance of the output, and how far creases and borders are from its "
+      "edges (root mean square and largest, fractions of the diagonal); default: nothing is printed",
+      [&options](const std::string&) { options.Summary = true; } },
     { "--version", "", "print the version and stop", [&options](const std::string&) { options.Version = true; } },
     { "--help", "", "print this text and stop", [&options](const std::string&) { options.Help = true; } },
   };

@@ -17,6 +17,7 @@ struct Options
   std::string Confidence;
   std::string Picture;
   std::string Report;
+  bool Summary = false;
   bool Help = false;
   bool Version = false;
 };

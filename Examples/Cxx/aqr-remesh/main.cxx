@@ -135,6 +135,22 @@ std::string JsonText(const std::string& text)
 }
 
 //------------------------------------------------------------------------------
+// One line with what most want to know of the report.
+void PrintSummary(const std::string& report)
+{
+  const auto figure = [&](const std::string& name)
+  {
+    const std::string key = "\"" + name + "\": ";
+    const size_t begin = report.find(key) + key.size();
+    return report.substr(begin, report.find_first_of(",}", begin) - begin);
+  };
+  std::cout << figure("points") << " points, " << figure("faces") << " faces, " << figure("quads")
+            << " quads, tolerance " << figure("tolerance") << ", creases off by " << figure("feature_rms")
+            << " (largest " << figure("feature_max") << "), borders by " << figure("boundary_rms") << " (largest "
+            << figure("boundary_max") << ")\n";
+}
+
+//------------------------------------------------------------------------------
 void Run(const Options& options, vtkAnisotropicQuadRemesher* filter, Complaints& complaints)
 {
   CheckOutputs(options);
@@ -185,6 +201,10 @@ void Run(const Options& options, vtkAnisotropicQuadRemesher* filter, Complaints&
     files.WriteText(options.Report, text.str());
   }
   files.Commit();
+  if (options.Summary)
+  {
+    PrintSummary(filter->GetReport());
+  }
 }
 }
 
