@@ -149,24 +149,90 @@ static aqr_options random_options(unsigned* state)
   return o;
 }
 
+/* A path along edges: from a random corner on over the triangles after it. */
+static size_t random_path(unsigned* state, const shape* m, int64_t* pairs, size_t most)
+{
+  size_t n = 0, t = (size_t)between(state, 0, (double)m->n_triangles);
+  for (; n < most && t < m->n_triangles; n++, t++)
+  {
+    size_t k = (size_t)between(state, 0, 3);
+    pairs[2 * n] = m->triangles[3 * t + k];
+    pairs[2 * n + 1] = m->triangles[3 * t + (k + 1) % 3];
+  }
+  return n;
+}
+
+/* The second shape beside the first. */
+static shape both(shape a, shape b)
+{
+  a.points = realloc(a.points, 3 * (a.n_points + b.n_points) * sizeof *a.points);
+  a.triangles = realloc(a.triangles, 3 * (a.n_triangles + b.n_triangles) * sizeof *a.triangles);
+  for (size_t i = 0; i < b.n_points; i++)
+    v3_store(a.points + 3 * (a.n_points + i), v3_add(v3_load(b.points + 3 * i), v3(20, 0, 0)));
+  for (size_t i = 0; i < 3 * b.n_triangles; i++)
+    a.triangles[3 * a.n_triangles + i] = b.triangles[i] + (int64_t)a.n_points;
+  a.n_points += b.n_points;
+  a.n_triangles += b.n_triangles;
+  shape_free(&b);
+  return a;
+}
+
+/* Surfaces number `first` and on: sheets, pipes, tori, solids with creases and handles, one component or two, every
+ * option at random, some with locked edges. */
 static void check_random(unsigned first, unsigned count)
 {
+  size_t met[3] = { 0, 0, 0 };
   for (unsigned i = first; i < first + count; i++)
   {
+    enum
+    {
+      most_locked = 30
+    };
     unsigned state = 7919 * i + 1;
     const char* name;
     shape m = random_shape(&state, &name);
+    if (shape_random(&state) < 0.15)
+      m = both(m, random_shape(&state, &name));
     aqr_options o = random_options(&state);
-    char label[64];
-    snprintf(label, sizeof label, "%u %s (%zu points)", i, name, m.n_points);
-    check_remesh(label, &m, &o);
+    int64_t pairs[2 * most_locked];
+    aqr_input input = shape_input(&m);
+    input.locked = pairs;
+    if (shape_random(&state) < 0.3)
+      input.number_of_locked = random_path(&state, &m, pairs, most_locked);
+    survey before = survey_shape(&m);
+    aqr_remesher* r = NULL;
+    aqr_status status = aqr_remesher_new(NULL, &r);
+    if (status == AQR_OK)
+      status = aqr_remesher_set_input(r, &input);
+    if (status == AQR_OK)
+      status = aqr_remesher_run(r, &o);
+    survey after = survey_mesh(r ? aqr_remesher_mesh(r) : NULL);
+    bool same = after.euler == before.euler && after.loops == before.loops && after.components == before.components;
+    if (status != AQR_OK || after.flaw || !same)
+      printf("seed %u: %s of %zu points and %zu locked edges: %s, %s, Euler %ld (%ld), %zu loops (%zu)\n", i, name,
+        m.n_points, input.number_of_locked, aqr_status_string(status), after.flaw ? after.flaw : "valid", after.euler,
+        before.euler, after.loops, before.loops);
+    CHECK(status == AQR_OK && !after.flaw && same);
+    CHECK(status != AQR_OK || aqr_remesher_report(r)->locked_missed == 0);
+    CHECK(!o.pure_quads || after.quads == after.faces);
+    met[0] += before.components > 1;
+    met[1] += input.number_of_locked > 0;
+    met[2] += before.euler < 2 * (long)before.components - (long)before.loops;
+    aqr_remesher_free(r);
     shape_free(&m);
   }
+  printf(
+    "%u surfaces, %zu of several components, %zu with locked edges, %zu with handles\n", count, met[0], met[1], met[2]);
 }
 
 AQR_TEST(no_input_or_parameters_break_the_mesh_or_its_topology)
 {
-  check_random(0, 40);
+  check_random(0, 260);
+}
+
+AQR_TEST(no_other_input_or_parameters_break_the_mesh_or_its_topology)
+{
+  check_random(260, 260);
 }
 
 /* ---- the same bytes ---- */
