@@ -227,7 +227,7 @@ static aqr_status keep(aqr_context* c, aqr_grower* g, const aqr_sample* a)
   return AQR_OK;
 }
 
-/* Arc length, spacings passed, and the type its longest trusted part has. */
+/* Arc length and spacings passed. */
 static void describe(aqr_grower* g)
 {
   double arc = 0, sigma = 0;

@@ -2,7 +2,9 @@
 #include "test.h"
 
 #include "drawing.h"
+#include "network.h"
 #include "solids.h"
+#include "tracer.h"
 
 static aqr_sample end_on(const model* e, aqr_index h, double t, aqr_index key)
 {
@@ -96,6 +98,100 @@ AQR_TEST(lines_that_meet_an_edge_at_one_place_keep_their_order_on_its_other_side
     CHECK(here != there);
   }
   drawing_free(&d);
+}
+
+static aqr_network network_of(drawing* d)
+{
+  aqr_network net = { 0 };
+  CHECK(aqr_network_build(&d->e.c, &d->e.s, &d->lines, &d->chains, 0.01, 0.01, &net) == AQR_OK);
+  return net;
+}
+
+/* Where directions are not trusted, lines of one family meet; crossings were once looked for between families only
+ * (paper 5.1). */
+AQR_TEST(lines_of_one_type_that_cross_make_vertices)
+{
+  drawing d = draw_on(shape_sphere(10, 1));
+  add_circle(&d, v3(0, 0, 1), 0.8);
+  add_circle(&d, v3(0.6, 0, 0.8), 0.8);
+  CHECK(d.lines.lines[0].type == d.lines.lines[1].type);
+  aqr_network net = network_of(&d);
+  CHECK(net.n_crossings == 2 && net.n_edges == 4 && net.n_loops == 4);
+  aqr_network_free(&d.e.c, &net);
+  drawing_free(&d);
+}
+
+/* Half of a small circle around a place on the border of a spot's first circle: it crosses that once. */
+static void add_loose_line(drawing* d)
+{
+  drawing whole = draw_on(shape_sphere(10, 1));
+  add_circle(&whole, v3(-0.733, 0, 0.68), 0.3);
+  add(d, whole.lines.samples, whole.lines.n_samples / 2, false);
+  drawing_free(&whole);
+}
+
+/* What a line runs on beyond its last crossing would be an edge with a loose end inside a face (paper 5.2). */
+AQR_TEST(the_ends_of_lines_beyond_their_last_crossings_are_no_edges)
+{
+  drawing d = draw_on(shape_sphere(10, 1));
+  add_circle(&d, v3(0, 0, 1), 0.8);
+  add_circle(&d, v3(0.6, 0, 0.8), 0.8);
+  add_loose_line(&d);
+  aqr_network net = network_of(&d);
+  CHECK(net.n_crossings == 3 && net.n_edges == 4 && net.n_loops == 4);
+  for (aqr_index h = 0; h < 2 * net.n_edges; h++)
+    CHECK(net.next[h] != (h ^ 1));
+  aqr_network_free(&d.e.c, &net);
+  drawing_free(&d);
+}
+
+static void add_straight(drawing* d, vec3 way)
+{
+  aqr_tracer t;
+  aqr_advance result;
+  vec3 from = v3_madd(v3(0.5, 0.5, 0), -0.4, way);
+  aqr_place at = model_place_at(&d->e, v3_madd(from, 0.2 / 16, way));
+  aqr_tracer_init(&t, &d->e.s, NULL);
+  aqr_tracer_start(&t, &at, way);
+  CHECK(aqr_tracer_straight(&d->e.c, &t, 5, &result) == AQR_OK && result == AQR_AT_BORDER);
+  add(d, t.samples, t.n_samples, false);
+  aqr_tracer_free(&d->e.c, &t);
+}
+
+static bool touches(const model* e, aqr_index f, vec3 p)
+{
+  bool found = false;
+  for (unsigned i = 0; i < 3; i++)
+    found |= v3_norm(v3_sub(model_shape_point(e, aqr_point(&e->s, e->s.corner[3 * f + i])), p)) < 1e-12;
+  return found;
+}
+
+/* Lines on an even grid run through its vertices, passing each on one side or the other; they may cross there three
+ * times, for faces to merge, but not be missed. */
+AQR_TEST(lines_that_meet_in_a_vertex_change_sides_there_and_nowhere_else)
+{
+  const vec3 ways[4] = { v3(1, 0, 0), v3(0, 1, 0), v3(1, 1, 0), v3(1, -1, 0) };
+  for (int k = 0; k < 16; k++)
+  {
+    if (k / 4 == k % 4)
+      continue;
+    drawing d = draw_on(shape_grid(16, 16, false, false, 0, 3, place_on_plane));
+    add_straight(&d, ways[k / 4]);
+    add_straight(&d, ways[k % 4]);
+    const aqr_line *first = &d.lines.lines[0], *second = &d.lines.lines[1];
+    size_t crossed = 0;
+    for (size_t i = first->first; i + 1 < first->first + first->count; i++)
+      for (size_t j = second->first; j + 1 < second->first + second->count; j++)
+      {
+        const aqr_sample *a = &d.lines.samples[i], *b = &d.lines.samples[j];
+        if (a->face != b->face || !aqr_chords_cross(&d.e.s, a->face, a, a + 1, b, b + 1))
+          continue;
+        crossed++;
+        CHECK(touches(&d.e, a->face, v3(0.5, 0.5, 0)));
+      }
+    CHECK(crossed % 2 == 1);
+    drawing_free(&d);
+  }
 }
 
 AQR_TEST_MAIN

@@ -126,38 +126,6 @@ static void check_samples(const aqr_surface* s, const aqr_tracer* t)
   CHECK(off == 0 && strayed == 0 && at_ends == 0);
 }
 
-static aqr_place centre_of(aqr_index f)
-{
-  return (aqr_place){ f, { 1.0 / 3, 1.0 / 3, 1.0 / 3 } };
-}
-
-/* The face around p. */
-static aqr_place place_at(const model* e, vec3 p)
-{
-  vec3 q = model_place(e, p);
-  aqr_place best = centre_of(0);
-  double least = -INFINITY;
-  for (aqr_index f = 0; f < e->s.n_faces; f++)
-  {
-    vec3 n = aqr_face_cross(&e->s, f);
-    double w[3], low = INFINITY;
-    for (unsigned i = 0; i < 3; i++)
-    {
-      vec3 a = aqr_point(&e->s, e->s.corner[3 * f + (i + 1) % 3]);
-      vec3 b = aqr_point(&e->s, e->s.corner[3 * f + (i + 2) % 3]);
-      w[i] = v3_dot(n, v3_cross(v3_sub(a, q), v3_sub(b, q))) / v3_norm2(n);
-      low = fmin(low, w[i]);
-    }
-    double away = fabs(v3_dot(v3_unit(n), v3_sub(q, aqr_point(&e->s, e->s.corner[3 * f]))));
-    if (low - away > least)
-    {
-      least = low - away;
-      best = (aqr_place){ f, { w[0], w[1], w[2] } };
-    }
-  }
-  return best;
-}
-
 static double off_straight(const model* e, const aqr_tracer* t, vec3 from, vec3 d)
 {
   double worst = 0;
@@ -175,7 +143,7 @@ AQR_TEST(geodesics_are_straight_on_a_plane_and_end_at_its_border)
     vec3 from = v3(0.43, 0.51, 0), d = v3(cos(a), sin(a), 0);
     aqr_tracer t;
     aqr_advance result;
-    aqr_place at = place_at(&e, from);
+    aqr_place at = model_place_at(&e, from);
     aqr_tracer_init(&t, &e.s, NULL);
     aqr_tracer_start(&t, &at, d);
     CHECK(aqr_tracer_straight(&e.c, &t, 0.1, &result) == AQR_OK && result == AQR_INSIDE);
@@ -201,7 +169,7 @@ AQR_TEST(a_line_through_the_vertices_of_a_grid_goes_straight_on)
     vec3 way = v3_scale(d[k % 4], k < 4 ? 1 : -1), from = v3_madd(v3(0.5, 0.5, 0), 0.2 / 16, way);
     aqr_tracer t;
     aqr_advance result;
-    aqr_place at = place_at(&e, from);
+    aqr_place at = model_place_at(&e, from);
     aqr_tracer_init(&t, &e.s, NULL);
     aqr_tracer_start(&t, &at, way);
     CHECK(aqr_tracer_straight(&e.c, &t, 5, &result) == AQR_OK && result == AQR_AT_BORDER);
@@ -227,7 +195,7 @@ AQR_TEST(geodesics_are_helices_on_a_cylinder)
     vec3 around = v3_unit(v3_sub(place_on_cylinder(1.0 / 60, z), place_on_cylinder(0, z)));
     aqr_tracer t;
     aqr_advance result;
-    aqr_place at = place_at(&e, from);
+    aqr_place at = model_place_at(&e, from);
     aqr_tracer_init(&t, &e.s, NULL);
     aqr_tracer_start(&t, &at, v3_madd(v3_scale(around, cos(slope)), sin(slope), v3(0, 0, 1)));
     double length = 0.5 / sin(slope) * 0.9;
@@ -255,7 +223,7 @@ AQR_TEST(length_travelled_around_a_thin_tube_is_the_paths)
   model e = model_surface(shape_grid(5, 400, true, false, 0, 5, place_on_hair));
   aqr_tracer t;
   aqr_advance result;
-  aqr_place at = centre_of(aqr_face_of(e.s.fan[model_point_near(&e, v3(0, 0, 0.5))]));
+  aqr_place at = model_centre(aqr_face_of(e.s.fan[model_point_near(&e, v3(0, 0, 0.5))]));
   aqr_tracer_init(&t, &e.s, NULL);
   aqr_tracer_start(&t, &at, v3_cross(v3(0, 0, 1), aqr_face_cross(&e.s, at.face)));
   vec3 from = aqr_tracer_position(&t);
@@ -283,7 +251,7 @@ AQR_TEST(a_seam_ends_a_line_as_a_border_does)
   CHECK(aqr_surface_cut(&e.c, &e.s, crease) == AQR_OK);
   aqr_tracer t;
   aqr_advance result;
-  aqr_place at = place_at(&e, v3(0.31, 0.33, 0));
+  aqr_place at = model_place_at(&e, v3(0.31, 0.33, 0));
   aqr_tracer_init(&t, &e.s, NULL);
   aqr_tracer_start(&t, &at, v3(1, 0.05, 0));
   CHECK(aqr_tracer_straight(&e.c, &t, 2, &result) == AQR_OK && result == AQR_AT_BORDER);
@@ -308,7 +276,7 @@ AQR_TEST(needles_neither_stop_nor_turn_a_line)
     vec3 from = v3(0.26, 0.31 + 0.01 * k, 0), d = v3_unit(v3(1, 0.3 - 0.05 * k, 0));
     aqr_tracer t;
     aqr_advance result;
-    aqr_place at = place_at(&e, from);
+    aqr_place at = model_place_at(&e, from);
     aqr_tracer_init(&t, &e.s, NULL);
     aqr_tracer_start(&t, &at, d);
     CHECK(aqr_tracer_straight(&e.c, &t, 2, &result) == AQR_OK && result == AQR_AT_BORDER);
@@ -326,7 +294,7 @@ static double follow(model* e, vec3 p, vec3 d, double length, double (*off)(vec3
 {
   aqr_tracer t;
   aqr_advance result = AQR_INSIDE;
-  aqr_place at = place_at(e, p);
+  aqr_place at = model_place_at(e, p);
   double worst = 0, step = 0.01;
   aqr_tracer_init(&t, &e->s, &e->f);
   aqr_tracer_start(&t, &at, d);

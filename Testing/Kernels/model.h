@@ -4,6 +4,7 @@
 #define AQR_TEST_MODEL_H
 
 #include "field.h"
+#include "polygon_mesh.h"
 #include "shapes.h"
 #include "sizing.h"
 #include "test.h"
@@ -75,6 +76,38 @@ static inline aqr_index model_point_near(const model* e, vec3 p)
   for (aqr_index v = 1; v < e->s.n_points; v++)
     if (v3_norm2(v3_sub(aqr_point(&e->s, v), q)) < v3_norm2(v3_sub(aqr_point(&e->s, best), q)))
       best = v;
+  return best;
+}
+
+static inline aqr_place model_centre(aqr_index f)
+{
+  return (aqr_place){ f, { 1.0 / 3, 1.0 / 3, 1.0 / 3 } };
+}
+
+/* The face around p, of the shape's coordinates. */
+static inline aqr_place model_place_at(const model* e, vec3 p)
+{
+  vec3 q = model_place(e, p);
+  aqr_place best = model_centre(0);
+  double least = -INFINITY;
+  for (aqr_index f = 0; f < e->s.n_faces; f++)
+  {
+    vec3 n = aqr_face_cross(&e->s, f);
+    double w[3], low = INFINITY;
+    for (unsigned i = 0; i < 3; i++)
+    {
+      vec3 a = aqr_point(&e->s, e->s.corner[3 * f + (i + 1) % 3]);
+      vec3 b = aqr_point(&e->s, e->s.corner[3 * f + (i + 2) % 3]);
+      w[i] = v3_dot(n, v3_cross(v3_sub(a, q), v3_sub(b, q))) / v3_norm2(n);
+      low = fmin(low, w[i]);
+    }
+    double away = fabs(v3_dot(v3_unit(n), v3_sub(q, aqr_point(&e->s, e->s.corner[3 * f]))));
+    if (low - away > least)
+    {
+      least = low - away;
+      best = (aqr_place){ f, { w[0], w[1], w[2] } };
+    }
+  }
   return best;
 }
 
