@@ -25,7 +25,10 @@ def points_of(surface):
 def grid(u, v, closed_u, closed_v):
     """Triangles of a grid of u times v points, in the order of their rows."""
     i, j = np.meshgrid(np.arange(u if closed_u else u - 1), np.arange(v if closed_v else v - 1), indexing="ij")
-    at = lambda a, b: ((a % u) * v + b % v).ravel()
+
+    def at(a, b):
+        return ((a % u) * v + b % v).ravel()
+
     a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
     return np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
 

@@ -355,8 +355,8 @@ class Program(unittest.TestCase):
             + ["CELL_DATA %d" % (len(lines) + len(faces)), "SCALARS chosen int 1", "LOOKUP_TABLE default", "1", "0"]
             + ["0"] * len(faces)) + "\n")
         report = self.path("report.json")
-        for options, locked, warning in (
-            ([], False, "2 cells"), (["--lock-lines"], True, "1 of 81"), (["--lock-array", "chosen"], True, "")):
+        runs = ([], False, "2 cells"), (["--lock-lines"], True, "1 of 81"), (["--lock-array", "chosen"], True, "")
+        for options, locked, warning in runs:
             run = self.run_program(name, self.path("out.obj"), "--tolerance", "0.003", "--report", report, *options)
             self.assertEqual(run.returncode, 0, run.stderr)
             self.assertIn(warning, run.stderr)

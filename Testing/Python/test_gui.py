@@ -12,11 +12,11 @@ import time
 import traceback
 
 sys.path[:0] = [path for path in os.environ.get("AQR_PYTHONPATH", "").split(":") if path]
-import anisotropicquadremesher  # noqa: F401 - so that the filter is seen with its own methods
-from paraview import servermanager, smtrace
-from paraview import simple as pv
-from PyQt5 import QtCore, QtWidgets
-from vtkmodules.vtkCommonCore import vtkOutputWindow
+import anisotropicquadremesher  # noqa: E402, F401 - so that the filter is seen with its own methods
+from paraview import smtrace  # noqa: E402
+from paraview import simple as pv  # noqa: E402
+from PyQt5 import QtCore, QtWidgets  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkOutputWindow  # noqa: E402
 
 errors = []
 vtkOutputWindow.GetInstance().AddObserver("ErrorEvent", lambda *_: errors.append("an error in the output window"))

@@ -10,7 +10,7 @@ import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-import anisotropicquadremesher  # so that filters are seen with their own methods
+import anisotropicquadremesher  # noqa: F401 - so that filters are seen with their own methods
 from paraview import servermanager
 from paraview import simple as pv
 from paraview import smstate
