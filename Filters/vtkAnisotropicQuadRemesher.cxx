@@ -233,10 +233,10 @@ public:
          << ", \"proximity_queries\": " << report->proximity_queries << ", \"faces_crossed\": " << report->faces_crossed
          << ", \"bounded_points\": " << report->bounded_points << ", \"topology_cuts\": " << report->topology_cuts
          << ", \"coarsened_components\": " << report->coarsened_components
-         << ", \"topology_lost\": " << report->topology_lost << ", \"target_missed\": " << report->target_missed
-         << ", \"tolerance\": " << report->tolerance << ", \"feature_rms\": " << report->feature_rms
-         << ", \"feature_max\": " << report->feature_max << ", \"boundary_rms\": " << report->boundary_rms
-         << ", \"boundary_max\": " << report->boundary_max;
+         << ", \"topology_lost\": " << report->topology_lost << ", \"asymmetric_points\": " << report->asymmetric_points
+         << ", \"target_missed\": " << report->target_missed << ", \"tolerance\": " << report->tolerance
+         << ", \"feature_rms\": " << report->feature_rms << ", \"feature_max\": " << report->feature_max
+         << ", \"boundary_rms\": " << report->boundary_rms << ", \"boundary_max\": " << report->boundary_max;
     if (const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher()))
     {
       size_t sides[3] = { 0, 0, 0 };
@@ -308,6 +308,12 @@ public:
     {
       this->Warnings.push_back(std::to_string(report->coarsened_components) +
                                " components were too small to carry lines at this density and were decimated instead.");
+    }
+    if (report->asymmetric_points)
+    {
+      this->Warnings.push_back(std::to_string(report->asymmetric_points) +
+                               " points of the input have no other at their mirror image: the output is what lies on "
+                               "the positive side of the plane of symmetry, and its image.");
     }
     if (report->topology_lost)
     {
@@ -443,6 +449,9 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
   options.anisotropy = this->Anisotropy;
   options.adaptivity = this->Adaptivity;
   options.pure_quads = this->PureQuads;
+  options.symmetry = this->Symmetry;
+  std::copy_n(this->SymmetryOrigin, 3, options.symmetry_origin);
+  std::copy_n(this->SymmetryNormal, 3, options.symmetry_normal);
   options.largest_valence = this->LargestValence;
   options.convex_partition = this->ConvexPartition;
   options.preserve_topology = this->PreserveTopology;
@@ -693,6 +702,11 @@ void vtkAnisotropicQuadRemesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Anisotropy: " << this->Anisotropy << "\n";
   os << indent << "Adaptivity: " << this->Adaptivity << "\n";
   os << indent << "PureQuads: " << onOff(this->PureQuads);
+  os << indent << "Symmetry: " << onOff(this->Symmetry);
+  os << indent << "SymmetryOrigin: " << this->SymmetryOrigin[0] << " " << this->SymmetryOrigin[1] << " "
+     << this->SymmetryOrigin[2] << "\n";
+  os << indent << "SymmetryNormal: " << this->SymmetryNormal[0] << " " << this->SymmetryNormal[1] << " "
+     << this->SymmetryNormal[2] << "\n";
   os << indent << "LargestValence: " << this->LargestValence << "\n";
   os << indent << "ConvexPartition: " << onOff(this->ConvexPartition);
   os << indent << "PreserveTopology: " << onOff(this->PreserveTopology);

@@ -257,6 +257,29 @@ public:
 
   ///@{
   /**
+   * Whether the output is symmetric about a plane, the one through SymmetryOrigin across SymmetryNormal.
+   * What lies on the positive side, to which the normal points, is remeshed and mirrored, whatever lies
+   * on the other: a warning counts points of the input without a mirror image. Attributes are mirrored
+   * with the points; ports 1 to 3 show the positive side. Default: off.
+   */
+  vtkSetMacro(Symmetry, bool);
+  vtkGetMacro(Symmetry, bool);
+  vtkBooleanMacro(Symmetry, bool);
+  ///@}
+
+  ///@{
+  /**
+   * A point of the plane of symmetry, and the direction across it, of any length but 0. Default: (0, 0, 0)
+   * and (1, 0, 0).
+   */
+  vtkSetVector3Macro(SymmetryOrigin, double);
+  vtkGetVector3Macro(SymmetryOrigin, double);
+  vtkSetVector3Macro(SymmetryNormal, double);
+  vtkGetVector3Macro(SymmetryNormal, double);
+  ///@}
+
+  ///@{
+  /**
    * Faces with more corners than this are split. Range [4, 64], default 5 (paper, section 5.2).
    */
   vtkSetClampMacro(LargestValence, int, 4, 64);
@@ -347,6 +370,9 @@ protected:
   double Anisotropy = 1.0;
   double Adaptivity = 1.0;
   bool PureQuads = false;
+  bool Symmetry = false;
+  double SymmetryOrigin[3] = { 0.0, 0.0, 0.0 };
+  double SymmetryNormal[3] = { 1.0, 0.0, 0.0 };
   int LargestValence = 5;
   bool ConvexPartition = true;
   bool PreserveTopology = true;

@@ -100,6 +100,7 @@ PICTURES = {
     "BoundaryLines": (SHEET, [False, True], {"Tolerance": 0.001}),
     "PreserveTopology": (CUSHION, [False, True], {"DensityMode": 1, "TargetNumberOfPoints": 60, "FeatureLines": False}),
     "FeatureLines": (FLANGE, [False, True], {"Tolerance": 0.002}),
+    "Symmetry": (RING, [False, True], {"Tolerance": 0.002, "SymmetryNormal": (0, 1, 0)}),
     "LockLines": (belt(), [False, True], {"Tolerance": 0.002}),
     "LargestValence": (RING, [4, 5, 8], {"Tolerance": 0.002}),
     "ConvexPartition": (SHEET, [False, True], {"Tolerance": 0.004, "LargestValence": 12, "BoundaryLines": False}),

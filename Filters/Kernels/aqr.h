@@ -138,11 +138,16 @@ extern "C"
     double adaptivity;           /**< [0, 1], 1: how far density follows curvature; 0: everywhere as for the mean */
     int pure_quads;              /**< 0 or 1, 0. 1: lines twice as far apart, then every face cut into quads by its
                                     centre and the middles of its edges */
-    int largest_valence;         /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
-    int convex_partition;        /**< 0 or 1, 1: concave faces are split (paper 5.2) */
-    int preserve_topology;       /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may
-                                    vanish */
-    uint32_t seed;               /**< 0: breaks ties between seeds of equal rank */
+    int symmetry;              /**< 0 or 1, 0. 1: the mesh is symmetric about a plane. What lies on the plane's positive
+                                  side is remeshed and mirrored, whatever lies on the other; the field and the
+                                  lines are those of that side */
+    double symmetry_origin[3]; /**< 0 0 0: a point of the plane, in the input's coordinates */
+    double symmetry_normal[3]; /**< 1 0 0: points to the positive side; any length above 0 */
+    int largest_valence;       /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
+    int convex_partition;      /**< 0 or 1, 1: concave faces are split (paper 5.2) */
+    int preserve_topology;     /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may
+                                  vanish */
+    uint32_t seed;             /**< 0: breaks ties between seeds of equal rank */
   } aqr_options;
 
   /** Every option at its default, with the cookie that aqr_remesher_run() asks for. */
@@ -252,6 +257,7 @@ extern "C"
     size_t topology_cuts;        /**< lines added so that every region is a disk */
     size_t coarsened_components; /**< components that carried no lines and were decimated instead */
     size_t topology_lost;        /**< 1 when preserve_topology was asked for and no attempt kept the Euler number */
+    size_t asymmetric_points;    /**< of the cleaned input, with no other point at their mirror image; with symmetry */
     size_t target_missed;        /**< 1 when target_points could not be met within 5 % */
     double tolerance;            /**< used, as a fraction of the diagonal */
     double feature_rms;          /**< distance of creases and locked edges from the output's edges: root mean square */

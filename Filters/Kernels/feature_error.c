@@ -182,7 +182,8 @@ static aqr_distance summary(const measuring* w, bool features)
   for (size_t i = 0; i < chains->n_chains; i++)
   {
     const aqr_chain* a = &chains->chains[i];
-    for (size_t k = a->first; a->is_feature == features && k < a->first + a->count; k++)
+    bool counts = a->is_feature == features && !aqr_on_plane(w->s, chains->half_edges[a->first]);
+    for (size_t k = a->first; counts && k < a->first + a->count; k++)
     {
       aqr_index h = chains->half_edges[k];
       double l = v3_norm(v3_sub(aqr_point(w->s, aqr_to(w->s, h)), aqr_point(w->s, aqr_from(w->s, h))));

@@ -83,7 +83,8 @@ static aqr_status link_edges(linker* l)
 static bool is_branch(const linker* l, aqr_index v)
 {
   const aqr_index* a = l->incident + l->first[v];
-  return l->first[v + 1] - l->first[v] != 2 || aqr_is_seam(l->s, a[0]) != aqr_is_seam(l->s, a[1]);
+  return l->first[v + 1] - l->first[v] != 2 || aqr_is_seam(l->s, a[0]) != aqr_is_seam(l->s, a[1]) ||
+         aqr_on_plane(l->s, a[0]) != aqr_on_plane(l->s, a[1]);
 }
 
 /* The half-edge by which the chain goes on from the end of h; of a seam's two sides the one that runs on. */

@@ -8,6 +8,7 @@
 #include "lines.h"
 #include "polygon_mesh.h"
 #include "sizing.h"
+#include "symmetry.h"
 
 enum aqr_stage_id
 {
@@ -35,6 +36,7 @@ struct aqr_remesher
   uint64_t done_density; /* fingerprint of the density array */
   size_t n_input_points;
   aqr_surface base;     /* cleaned */
+  aqr_surface half;     /* of it, when the output is to be symmetric */
   aqr_surface cut;      /* cut open along creases, when there are any */
   aqr_surface* surface; /* the one in use */
   aqr_chains chains;
@@ -48,6 +50,12 @@ struct aqr_remesher
   aqr_lines_view lines_view;
   bool has_result;
 };
+
+/* The plane that the options of the last run name, in the input's coordinates. */
+static inline aqr_plane aqr_symmetry_plane(const aqr_options* o)
+{
+  return (aqr_plane){ v3_load(o->symmetry_origin), v3_unit(v3_load(o->symmetry_normal)) };
+}
 
 /* Fill and release the views (results.c). */
 aqr_status aqr_results_mesh(aqr_remesher* r);

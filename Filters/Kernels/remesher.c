@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pipeline: surface -> features -> curvature -> direction field -> sizing -> lines -> network -> faces -> fit. */
+#include "chain_places.h"
 #include "coarsen.h"
 #include "faces.h"
 #include "feature_error.h"
@@ -86,6 +87,7 @@ aqr_options aqr_default_options(void)
     .largest_spacing = 0.05,
     .anisotropy = 1,
     .adaptivity = 1,
+    .symmetry_normal = { 1, 0, 0 },
     .largest_valence = 5,
     .convex_partition = 1,
     .preserve_topology = 1 };
@@ -130,6 +132,7 @@ static void drop_from(aqr_remesher* r, int first)
     aqr_chains_free(c, &r->chains);
     if (r->surface == &r->cut)
       aqr_surface_free(c, &r->cut);
+    aqr_surface_free(c, &r->half);
     r->surface = NULL;
   }
   if (first <= AQR_STAGE_SURFACE)
@@ -207,6 +210,34 @@ aqr_status aqr_remesher_set_input(aqr_remesher* r, const aqr_input* input)
   return status;
 }
 
+/* The half that decides, with its creases in the place of the whole's. */
+static aqr_status cut_half(aqr_remesher* r, const aqr_options* o, uint8_t** crease, size_t* n)
+{
+  aqr_context* c = &r->context;
+  const double scale = 1 / r->base.diagonal;
+  aqr_plane plane = aqr_symmetry_plane(o);
+  uint8_t* kept = NULL;
+  plane.origin = v3_scale(v3_sub(plane.origin, r->base.centre), scale);
+  aqr_status status = aqr_symmetry_unmatched(c, &r->base, &plane, &r->report.asymmetric_points);
+  r->surface_report.asymmetric_points = r->report.asymmetric_points;
+  if (status == AQR_OK)
+    status = aqr_symmetry_cut(c, &r->base, &plane, *crease, &r->half, &kept);
+  if (status == AQR_BAD_OPTION)
+    snprintf(c->message, sizeof c->message, "nothing lies on the positive side of the plane of symmetry");
+  if (status != AQR_OK)
+    return status;
+  AQR_DROP(c, *crease, *n);
+  *crease = kept;
+  *n = 3 * r->half.n_faces;
+  return AQR_OK;
+}
+
+/* What is remeshed: the cleaned input, or half of it. */
+static aqr_surface* solid(aqr_remesher* r)
+{
+  return r->half.n_faces ? &r->half : &r->base;
+}
+
 static aqr_status run_features(aqr_remesher* r, const aqr_options* o)
 {
   aqr_context* c = &r->context;
@@ -217,16 +248,19 @@ static aqr_status run_features(aqr_remesher* r, const aqr_options* o)
   if (o->feature_lines)
     AQR_TRY(aqr_features_detect(c, &r->base, o->feature_angle, shortest_feature, crease, &r->report));
   r->surface_report.feature_edges = r->report.feature_edges;
+  r->surface_report.asymmetric_points = 0;
   for (size_t h = 0; r->base.locked && h < n; h++)
     crease[h] |= r->base.locked[h] && !aqr_is_boundary(&r->base, (aqr_index)h);
+  if (o->symmetry)
+    AQR_TRY(cut_half(r, o, &crease, &n));
   bool any = memchr(crease, 1, n) != NULL;
   if (any)
   {
-    AQR_TRY(aqr_surface_copy(c, &r->base, &r->cut));
+    AQR_TRY(aqr_surface_copy(c, solid(r), &r->cut));
     r->surface = &r->cut;
     AQR_TRY(aqr_surface_cut(c, &r->cut, crease));
   }
-  r->surface = any ? &r->cut : &r->base;
+  r->surface = any ? &r->cut : solid(r);
   AQR_TRY(aqr_chains_build(c, r->surface, corner_angle, &r->chains));
 done:
   AQR_DROP(c, crease, n);
@@ -327,7 +361,7 @@ done:
 static bool keeps_topology(const aqr_remesher* r)
 {
   const aqr_polygon_mesh* m = &r->polygons;
-  const aqr_surface* s = &r->base;
+  const aqr_surface* s = r->half.n_faces ? &r->half : &r->base;
   long long chi = 0, wanted = (long long)s->n_points + (long long)s->n_faces;
   for (size_t h = 0; h < m->n_half_edges; h += 2)
     chi -= m->half_edges[h].from != AQR_NONE;
@@ -337,6 +371,17 @@ static bool keeps_topology(const aqr_remesher* r)
   for (aqr_index h = 0; h < 3 * s->n_faces; h++)
     wanted -= s->twin[h] == AQR_NONE || h < s->twin[h];
   return chi == wanted;
+}
+
+/* Of the whole output: the half's vertices twice, those on the plane once. */
+static size_t count_output(const aqr_remesher* r)
+{
+  size_t n = count_vertices(&r->polygons), once = 0;
+  if (!r->surface->mirrored)
+    return n;
+  for (aqr_index v = 0; v < r->polygons.n_vertices; v++)
+    once += r->polygons.vertices[v].out != AQR_NONE && aqr_symmetry_on_plane(r->surface, &r->polygons, v);
+  return 2 * n - once;
 }
 
 /* Lines, network and faces for one tolerance; a smaller one where that gives fewer than `points`. */
@@ -366,6 +411,8 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
   status = aqr_faces_finish(c, &r->polygons, &faces);
   if (status == AQR_OK && o->pure_quads)
     status = aqr_subdivide(c, r->surface, &r->polygons);
+  if (status == AQR_OK && r->surface->mirrored) /* which vertices are on the plane is asked for from here on */
+    status = aqr_place_on_chains(c, r->surface, &r->polygons);
   end_stage(r, AQR_STAGE_FACES, began);
   return status;
 }
@@ -407,7 +454,9 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
 {
   aqr_context* c = &r->context;
   aqr_status status = AQR_OK;
-  const double per = o->pure_quads ? quads_per_face : 1, goal = (double)o->target_points / per;
+  /* points of the output over points that lines give */
+  const double per = (o->pure_quads ? quads_per_face : 1) * (o->symmetry ? 2 : 1),
+               goal = (double)o->target_points / per;
   double ask = goal / largest_excess, points = goal, before[3] = { 0, 0, 0 };
   outcome best = { .report = r->report, .error = INFINITY };
   for (int i = 0; i < most_attempts; i++)
@@ -421,7 +470,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
     before[1] = r->sizing.stretch;
     before[2] = points;
     AQR_TRY(attempt(r, o, start, points, &reached));
-    double made = fmax(1, (double)count_vertices(&r->polygons)) / per, error = fabs(log(made / goal));
+    double made = fmax(1, (double)count_output(r)) / per, error = fabs(log(made / goal));
     if (o->preserve_topology && !keeps_topology(r))
       error += lost_topology;
     if (error < best.error)
@@ -481,6 +530,13 @@ static aqr_status check_options(aqr_remesher* r, const aqr_options* o)
     if (status != AQR_OK)
       return status;
   }
+  const double *at = o->symmetry_origin, *up = o->symmetry_normal, length = v3_norm(v3_load(up));
+  if (o->symmetry && !(isfinite(at[0]) && isfinite(at[1]) && isfinite(at[2]) && isfinite(length) && length > 0))
+  {
+    snprintf(r->context.message, sizeof r->context.message, "%s",
+      "symmetry_origin and symmetry_normal must be finite, and the normal no zero vector");
+    return AQR_BAD_OPTION;
+  }
   for (size_t i = 0; o->density_scale && i < r->n_input_points; i++)
     if (!(o->density_scale[i] > 0) || !isfinite(o->density_scale[i]))
     {
@@ -507,7 +563,12 @@ static uint64_t fingerprint(const double* a, size_t n)
 static int first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t density)
 {
   const aqr_options* d = &r->done;
-  if (o->feature_lines != d->feature_lines || differ(o->feature_angle, d->feature_angle))
+  bool moved = false;
+  for (unsigned k = 0; k < 3; k++)
+    moved |=
+      differ(o->symmetry_origin[k], d->symmetry_origin[k]) || differ(o->symmetry_normal[k], d->symmetry_normal[k]);
+  if (o->feature_lines != d->feature_lines || differ(o->feature_angle, d->feature_angle) ||
+      !o->symmetry != !d->symmetry || (o->symmetry && moved))
     return AQR_STAGE_FEATURES;
   if (differ(o->curvature_radius, d->curvature_radius))
     return AQR_STAGE_CURVATURE;
@@ -539,7 +600,13 @@ static aqr_status run_cached(
 
 static aqr_status run_curvature(aqr_remesher* r, const aqr_options* o)
 {
-  return aqr_curvature_tensors(&r->context, r->surface, o->curvature_radius, &r->tensors);
+  aqr_status status = aqr_curvature_tensors(&r->context, r->surface, o->curvature_radius, &r->tensors);
+  if (status == AQR_OK && r->surface->mirrored)
+  {
+    const aqr_plane plane = aqr_symmetry_plane(o);
+    aqr_symmetry_complete(r->surface, &plane, r->tensors.t, r->tensors.normal);
+  }
+  return status;
 }
 
 static aqr_status run_field(aqr_remesher* r, const aqr_options* o)
@@ -622,6 +689,8 @@ static aqr_status run_stages(aqr_remesher* r, const aqr_options* o)
   AQR_TRY(run_lines(r, o));
   AQR_TRY(show_lines(r));
   double began = begin_stage(r, AQR_STAGE_FIT);
+  if (r->surface->mirrored)
+    AQR_TRY(aqr_symmetry_open(&r->context, r->surface, &r->polygons));
   AQR_TRY(aqr_fit(&r->context, r->surface, r->field.normal, &r->polygons));
   end_stage(r, AQR_STAGE_FIT, began);
   began = begin_stage(r, AQR_STAGE_RESULT);

@@ -56,6 +56,42 @@ static aqr_origin origin_of(const aqr_surface* s, const aqr_place* at)
   return r;
 }
 
+static vec3 mirror(const aqr_plane* plane, vec3 p)
+{
+  return v3_madd(p, -2 * aqr_plane_height(plane, p), plane->normal);
+}
+
+static const double steepest = 0.3; /* sine of the angle from which on a normal on the plane is that of a crease */
+
+/* A vertex of the half's border becomes one inside the whole: exactly on the plane, and of the kind that the creases
+ * and borders that meet it there and their mirror images make it. */
+static void put_on_plane(
+  const aqr_remesher* r, const aqr_plane* plane, aqr_index v, double* point, double* normal, uint8_t* kind)
+{
+  const aqr_polygon_mesh* m = &r->polygons;
+  aqr_index h = m->vertices[v].out;
+  unsigned features = 0;
+  bool border = false;
+  vec3 p = v3_load(point), n = v3_load(normal);
+  do
+  {
+    if (aqr_pm_face(m, h) == AQR_NONE || aqr_pm_face(m, h ^ 1) == AQR_NONE)
+      border |= !aqr_symmetry_on_plane(r->surface, m, aqr_pm_to(m, h));
+    else
+      features += m->edge_type[h >> 1] == AQR_LINE_FEATURE;
+    h = aqr_pm_next_around(m, h);
+  } while (h != m->vertices[v].out);
+  bool ridge = r->done.feature_lines && fabs(v3_dot(n, plane->normal)) > steepest;
+  v3_store(point, v3_madd(p, -aqr_plane_height(plane, p), plane->normal));
+  v3_store(normal, aqr_plane_normal(plane, n));
+  if (border)
+    *kind = features ? AQR_VERTEX_CORNER : AQR_VERTEX_BOUNDARY;
+  else if (ridge || features)
+    *kind = features > (ridge ? 0 : 1) ? AQR_VERTEX_CORNER : AQR_VERTEX_FEATURE;
+  else
+    *kind = AQR_VERTEX_INTERIOR;
+}
+
 aqr_status aqr_results_mesh(aqr_remesher* r)
 {
   aqr_context* c = &r->context;
@@ -63,15 +99,24 @@ aqr_status aqr_results_mesh(aqr_remesher* r)
   aqr_status status = AQR_OK;
   aqr_mesh* out = &r->mesh;
   aqr_results_free_mesh(r);
-  size_t n_points = 0, n_faces = 0, n_corners = 0;
+  const bool mirrored = r->surface->mirrored;
+  const aqr_plane plane = aqr_symmetry_plane(&r->done);
+  size_t n_points = 0, n_faces = 0, n_corners = 0, half_faces, half_corners;
   aqr_index* id = AQR_NEW(c, aqr_index, m->n_vertices);
-  AQR_REQUIRE(id, AQR_OUT_OF_MEMORY);
+  aqr_index* image = AQR_NEW(c, aqr_index, mirrored ? m->n_vertices : 0); /* point at the mirror image */
+  AQR_REQUIRE(id && image, AQR_OUT_OF_MEMORY);
   for (size_t v = 0; v < m->n_vertices; v++)
     id[v] = m->vertices[v].out == AQR_NONE ? AQR_NONE : (aqr_index)n_points++;
   for (size_t h = 0; h < m->n_half_edges; h++)
     n_corners += m->half_edges[h].from != AQR_NONE && m->half_edges[h].face != AQR_NONE;
   for (size_t f = 0; f < m->n_faces; f++)
     n_faces += m->faces[f] != AQR_NONE;
+  half_faces = n_faces;
+  half_corners = n_corners;
+  for (aqr_index v = 0; mirrored && v < m->n_vertices; v++)
+    image[v] = id[v] == AQR_NONE || aqr_symmetry_on_plane(r->surface, m, v) ? id[v] : (aqr_index)n_points++;
+  n_faces *= mirrored ? 2 : 1;
+  n_corners *= mirrored ? 2 : 1;
   double* points = AQR_NEW(c, double, 3 * n_points);
   double* normals = AQR_NEW(c, double, 3 * n_points);
   aqr_origin* origins = AQR_NEW(c, aqr_origin, n_points);
@@ -89,6 +134,17 @@ aqr_status aqr_results_mesh(aqr_remesher* r)
     v3_store(normals + 3 * (size_t)id[v], m->vertices[v].normal);
     origins[id[v]] = origin_of(r->surface, &m->vertices[v].place);
     kind[id[v]] = m->vertices[v].kind;
+    if (mirrored && image[v] == id[v])
+      put_on_plane(r, &plane, (aqr_index)v, points + 3 * (size_t)id[v], normals + 3 * (size_t)id[v], &kind[id[v]]);
+    else if (mirrored)
+    {
+      size_t i = image[v];
+      v3_store(points + 3 * i, mirror(&plane, v3_load(points + 3 * (size_t)id[v])));
+      const aqr_plane turn = { { 0, 0, 0 }, plane.normal };
+      v3_store(normals + 3 * i, mirror(&turn, m->vertices[v].normal));
+      origins[i] = origins[id[v]];
+      kind[i] = kind[id[v]];
+    }
   }
   size_t k = 0, f = 0;
   for (size_t i = 0; i < m->n_faces; i++)
@@ -100,14 +156,24 @@ aqr_status aqr_results_mesh(aqr_remesher* r)
     source[f++] = r->surface->source[m->vertices[m->half_edges[h].from].place.face];
     do
     {
-      AQR_REQUIRE(k < n_corners, AQR_INTERNAL);
+      AQR_REQUIRE(k < half_corners, AQR_INTERNAL);
+      if (mirrored) /* the other way round, behind all of the half */
+        connectivity[half_corners + 2 * (size_t)offsets[f - 1] + aqr_pm_face_size(m, (aqr_index)i) - 1 - k] =
+          image[m->half_edges[h].from];
       connectivity[k++] = id[m->half_edges[h].from];
       h = m->half_edges[h].next;
     } while (h != m->faces[i]);
   }
+  for (size_t i = 0; mirrored && i < half_faces; i++)
+  {
+    offsets[half_faces + i] = (int64_t)half_corners + offsets[i];
+    source[half_faces + i] = source[i];
+  }
+  k = n_corners;
   offsets[n_faces] = (int64_t)k;
 done:
   AQR_DROP(c, id, m->n_vertices);
+  AQR_DROP(c, image, mirrored ? m->n_vertices : 0);
   if (status != AQR_OK)
     aqr_results_free_mesh(r);
   return status;

@@ -504,6 +504,23 @@ static aqr_status close_loops(builder* b)
   return AQR_OK;
 }
 
+aqr_status aqr_surface_split_fans(aqr_context* c, aqr_surface* s)
+{
+  copies added = { 0 };
+  aqr_status status = AQR_OK;
+  size_t old = s->n_points;
+  AQR_TRY(split_fans(c, s, &added));
+  AQR_REQUIRE(aqr_surface_reserve_origins(c, s, s->n_points), AQR_OUT_OF_MEMORY);
+  for (size_t i = 0; i < added.n; i++)
+    s->origin[old + i] = s->origin[added.of[i]];
+  for (size_t i = 0; i < s->n_points; i++)
+    s->clean[i] = (aqr_index)i;
+  s->n_clean = s->n_points;
+done:
+  AQR_DROP(c, added.of, added.capacity);
+  return status;
+}
+
 aqr_status aqr_surface_cut(aqr_context* c, aqr_surface* s, const uint8_t* is_crease)
 {
   copies added = { 0 };

@@ -28,6 +28,7 @@ typedef struct aqr_surface
   aqr_index* source;  /* n_faces: input triangle */
   uint8_t* locked;    /* 3 * n_faces: 1 where the half-edge is to be a crease whatever its angle; NULL: none. Only the
                          cleaned surface has it, cuts and copies do not */
+  uint8_t* mirrored;  /* n_clean: 1 for points on the plane over which this half will be mirrored; NULL: no plane */
   size_t faces_held, points_held, origins_held; /* what the arrays per face, per point, and `origin` have room for */
   vec3 centre;                                  /* input = centre + diagonal * point */
   double diagonal;
@@ -117,6 +118,16 @@ aqr_status aqr_surface_cut(aqr_context* c, aqr_surface* s, const uint8_t* is_cre
 
 /* Halves edges longer than longest_edge at their middle, longest first, with the triangles beside them (paper 3.2). */
 aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edge, size_t* added);
+
+/* Gives every fan of faces a cleaned point of its own, and all points their fans; clean and n_clean are set. */
+aqr_status aqr_surface_split_fans(aqr_context* c, aqr_surface* s);
+
+/* Whether the half-edge is a border on the plane over which the surface will be mirrored. */
+static inline bool aqr_on_plane(const aqr_surface* s, aqr_index h)
+{
+  return s->mirrored && aqr_is_boundary(s, h) && s->mirrored[s->clean[aqr_from(s, h)]] &&
+         s->mirrored[s->clean[aqr_to(s, h)]];
+}
 
 void aqr_surface_free(aqr_context* c, aqr_surface* s);
 

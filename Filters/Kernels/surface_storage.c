@@ -69,6 +69,7 @@ void aqr_surface_free(aqr_context* c, aqr_surface* s)
   AQR_DROP(c, s->twin, 3 * s->faces_held);
   AQR_DROP(c, s->source, s->faces_held);
   AQR_DROP(c, s->locked, 3 * s->n_faces);
+  AQR_DROP(c, s->mirrored, s->n_clean);
   AQR_DROP(c, s->points, 3 * s->points_held);
   AQR_DROP(c, s->fan, s->points_held);
   AQR_DROP(c, s->clean, s->points_held);
@@ -80,8 +81,10 @@ aqr_status aqr_surface_copy(aqr_context* c, const aqr_surface* from, aqr_surface
 {
   memset(to, 0, sizeof *to);
   if (!aqr_surface_reserve_faces(c, to, from->n_faces) || !aqr_surface_reserve_points(c, to, from->n_points) ||
-      !aqr_surface_reserve_origins(c, to, from->n_clean))
+      !aqr_surface_reserve_origins(c, to, from->n_clean) ||
+      (from->mirrored && !(to->mirrored = AQR_NEW(c, uint8_t, from->n_clean))))
   {
+    to->n_clean = from->n_clean;
     aqr_surface_free(c, to);
     return AQR_OUT_OF_MEMORY;
   }
@@ -92,6 +95,8 @@ aqr_status aqr_surface_copy(aqr_context* c, const aqr_surface* from, aqr_surface
   memcpy(to->fan, from->fan, from->n_points * sizeof *to->fan);
   memcpy(to->clean, from->clean, from->n_points * sizeof *to->clean);
   memcpy(to->origin, from->origin, from->n_clean * sizeof *to->origin);
+  if (from->mirrored)
+    memcpy(to->mirrored, from->mirrored, from->n_clean);
   to->n_faces = from->n_faces;
   to->n_points = from->n_points;
   to->n_clean = from->n_clean;

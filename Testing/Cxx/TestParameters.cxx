@@ -98,11 +98,11 @@ int TestParameters(int, char*[])
     CHECK(filter->GetDensityMode() == Filter::NUMBER_OF_POINTS);
     std::ostringstream text;
     filter->Print(text);
-    for (const char* name :
-      { "DensityMode", "Tolerance", "TargetNumberOfPoints", "UseDensityArray", "CurvatureRadius", "SmoothingIterations",
-        "ConfidenceAngle", "FeatureLines", "FeatureAngle", "BoundaryLines", "LockLines", "UseLockArray",
-        "LargestSpacing", "Anisotropy", "Adaptivity", "PureQuads", "LargestValence", "ConvexPartition",
-        "PreserveTopology", "Seed", "NumberOfThreads", "GenerateDirections", "GenerateConfidence", "GenerateLines" })
+    for (const char* name : { "DensityMode", "Tolerance", "TargetNumberOfPoints", "UseDensityArray", "CurvatureRadius",
+           "SmoothingIterations", "ConfidenceAngle", "FeatureLines", "FeatureAngle", "BoundaryLines", "LockLines",
+           "UseLockArray", "LargestSpacing", "Anisotropy", "Adaptivity", "PureQuads", "Symmetry", "SymmetryOrigin",
+           "SymmetryNormal", "LargestValence", "ConvexPartition", "PreserveTopology", "Seed", "NumberOfThreads",
+           "GenerateDirections", "GenerateConfidence", "GenerateLines" })
     {
       checks.Check(text.str().find(std::string("  ") + name + ": ") != std::string::npos, name, __LINE__);
     }

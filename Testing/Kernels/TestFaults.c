@@ -66,6 +66,7 @@ static aqr_options small_options(int by_points)
   o.largest_spacing = 0.3;
   o.smoothing_iterations = 1;
   o.feature_angle = 25;
+  o.symmetry = by_points > 1;
   return o;
 }
 
@@ -144,6 +145,12 @@ AQR_TEST(memory_that_runs_out_while_a_target_is_met_is_an_error)
 {
   size_t visited = 0;
   fail_everywhere(1, &visited);
+}
+
+AQR_TEST(memory_that_runs_out_while_a_half_is_mirrored_is_an_error)
+{
+  size_t visited = 0;
+  fail_everywhere(2, &visited);
 }
 
 AQR_TEST(a_cancel_at_any_step_stops_and_the_next_run_works)

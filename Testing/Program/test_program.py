@@ -368,6 +368,19 @@ class Program(unittest.TestCase):
             on = [p for p in corners if abs(p[2]) < 1e-6 and math.hypot(*p[:2]) > 3.9]
             self.assertEqual(len(on) > 8, locked, len(on))
 
+    def test_symmetric_output_has_every_point_twice(self):
+        def rounded(p, axis, sign):
+            return tuple(round(sign * x if k == axis else x, 3) + 0.0 for k, x in enumerate(p))
+
+        for plane, axis in (("y", 1), ("0,0,-2,7,7,0", 2)):
+            run = self.run_program(self.torus, self.path("out.obj"), "--tolerance", "0.003", "--symmetry", plane)
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
+            with open(self.path("out.obj")) as f:
+                points = [[float(word) for word in line.split()[1:]] for line in f if line.startswith("v ")]
+            self.assertEqual(sorted(rounded(p, axis, 1) for p in points), sorted(rounded(p, axis, -1) for p in points))
+        for plane in ("w", "1,2", "0,0,0,0,0,0", "1,0,0,0,0,0,0", "1,0,a,0,0,0"):
+            self.expect_failure(2, ["--symmetry"], self.torus, self.path("o.obj"), "--symmetry", plane)
+
     def test_summary_is_one_line_with_the_figures_of_the_report(self):
         run = self.run_program(self.torus, self.path("out.obj"), "--summary", "--report", self.path("report.json"))
         self.assertEqual((run.returncode, run.stderr), (0, ""))

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <sstream>
 #include <vector>
 
@@ -49,6 +50,38 @@ double Number(const std::string& name, const std::string& text, double low, doub
     throw UsageError(range.str());
   }
   return value;
+}
+
+//------------------------------------------------------------------------------
+void SetSymmetry(Filter* filter, const std::string& text)
+{
+  double plane[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  if (text == "x" || text == "y" || text == "z")
+  {
+    plane[text[0] - 'x'] = 1.0;
+  }
+  else
+  {
+    std::istringstream words(text);
+    std::string word;
+    size_t n = 0;
+    const double most = std::numeric_limits<double>::max();
+    for (; std::getline(words, word, ','); ++n)
+    {
+      const double number = Number("--symmetry", word, -most, most, false);
+      if (n < 6)
+      {
+        plane[n] = number;
+      }
+    }
+    if (n != 6 || (plane[0] == 0.0 && plane[1] == 0.0 && plane[2] == 0.0))
+    {
+      throw UsageError("--symmetry: \"" + text + "\" is neither x, y or z nor NX,NY,NZ,OX,OY,OZ");
+    }
+  }
+  filter->SymmetryOn();
+  filter->SetSymmetryNormal(plane);
+  filter->SetSymmetryOrigin(plane + 3);
 }
 
 //------------------------------------------------------------------------------
@@ -102,6 +135,10 @@ std::vector<Option> AllOptions(Filter* filter, Options& options)
     AQR_SWITCH("--pure-quads", PureQuads, On,
       "quads only: lines twice as far apart, then every face cut into quads; default: triangles and pentagons where "
       "lines end"),
+    { "--symmetry", "PLANE",
+      "make the output symmetric about the plane x, y or z (across that axis, through the origin) or NX,NY,NZ,OX,OY,OZ "
+      "(normal and a point); what lies to where the normal points is mirrored; default: none",
+      [filter](const std::string& value) { SetSymmetry(filter, value); } },
     AQR_NUMBER("--curvature-radius", "F", CurvatureRadius, false,
       "radius over which curvature is averaged, as a fraction of the diagonal"),
     AQR_NUMBER("--smoothing", "N", SmoothingIterations, true, "smoothing iterations of the direction field"),
