@@ -5,6 +5,7 @@
 
 #include "aqr.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct bytes
@@ -60,6 +61,22 @@ static inline aqr_options take_mild_options(bytes* b)
   o.largest_valence = 4 + rest % 8;
   o.seed = rest / 8;
   return o;
+}
+
+/* Locks a side of every third triangle, and a pair that may be no edge, where the seed says so; the caller frees. */
+static inline int64_t* lock_some(aqr_input* in, uint32_t seed)
+{
+  size_t n = in->number_of_triangles;
+  int64_t* locked = seed & 16 && n ? malloc(2 * (n / 3 + 2) * sizeof *locked) : NULL;
+  if (!locked)
+    return NULL;
+  for (size_t i = 0; i < n; i += 3, in->number_of_locked++)
+    for (size_t k = 0; k < 2; k++)
+      locked[2 * in->number_of_locked + k] = in->triangles[3 * i + (seed + k) % 3];
+  locked[2 * in->number_of_locked] = in->triangles[0];
+  locked[2 * in->number_of_locked++ + 1] = in->triangles[3 * n - 1];
+  in->locked = locked;
+  return locked;
 }
 
 #endif

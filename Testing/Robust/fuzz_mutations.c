@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Fuzzes surfaces with defects: four bytes of options, one for the surface, seven or more for every defect. */
+/* Fuzzes surfaces with defects: four bytes of options, one for the surface, seven or more for every defect.
+ * Half of the seeds lock some edges. */
 #include "bytes.h"
 #include "examine.h"
 #include "mutate.h"
@@ -17,6 +18,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   if (mutate(&m, &b))
   {
     aqr_input input = shape_input(&m);
+    int64_t* locked = lock_some(&input, options.seed);
     aqr_status status;
     const char* fault = examine(&input, &options, &status);
     if (fault)
@@ -24,6 +26,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
       fprintf(stderr, "fault: %s (%s)\n", fault, aqr_status_string(status));
       abort();
     }
+    free(locked);
   }
   shape_free(&m);
   return 0;

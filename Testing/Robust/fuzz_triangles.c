@@ -33,6 +33,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     aqr_input input = {
       .number_of_points = n_points, .points_f = points, .number_of_triangles = n_triangles, .triangles = triangles
     };
+    int64_t* locked = lock_some(&input, options.seed);
     aqr_status status;
     const char* fault = examine(&input, &options, &status);
     if (fault)
@@ -40,6 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
       fprintf(stderr, "fault: %s (%s)\n", fault, aqr_status_string(status));
       abort();
     }
+    free(locked);
   }
   free(points);
   free(triangles);
