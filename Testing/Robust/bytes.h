@@ -59,6 +59,7 @@ static inline aqr_options take_mild_options(bytes* b)
   o.target_points = 4 + 2 * fineness;
   o.feature_angle = angle ? angle * (180.0 / 255) : 40;
   o.largest_valence = 4 + rest % 8;
+  o.pure_quads = rest >> 6 & 1;
   o.seed = rest / 8;
   return o;
 }

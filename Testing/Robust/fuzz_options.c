@@ -9,42 +9,44 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
-/* Any bytes for a while, then a value that is allowed: a run with one wild option among good ones goes deepest. */
+/* Mostly a value that is allowed, from one byte: a run with one wild option among good ones goes deepest. */
 static double take_value(bytes* b, double low, double high)
 {
   uint8_t kind = take_8(b);
   if (kind == 255)
     return take_double(b);
-  return kind < 250 ? low + (high - low) * take_16(b) / 65535 : kind % 2 ? low : high;
+  return kind < 252 ? low + (high - low) * kind / 251 : kind % 2 ? low : high;
 }
 
+/* The switches come first: fuzzers begin with few bytes, and all that is missing is 0, which is coarse and fast. */
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
   bytes b = { data, size };
   shape m = mutate_base(take_8(&b));
   aqr_options o = aqr_default_options();
-  if (take_8(&b) == 255)
-    take(&b, &o.cookie, sizeof o.cookie);
-  o.density = (aqr_density)(take_8(&b) % 2);
-  /* small values cost time, not paths: nine tenths of the range of the logarithm are left out, and zeros are coarse */
+  uint8_t flags = take_8(&b), more = take_8(&b);
+  o.density = flags & 1 ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE;
+  o.feature_lines = !(flags & 2);
+  o.boundary_lines = !(flags & 4);
+  o.convex_partition = !(flags & 8);
+  o.preserve_topology = !(flags & 16);
+  o.pure_quads = flags >> 5 & 1;
+  /* small values cost time, not paths: nine tenths of the range of the logarithm are left out */
   o.tolerance = pow(10, take_value(&b, -1, -3.5));
-  o.target_points = (int64_t)fmin(3000, fmax(-10, take_value(&b, 4, 2000)));
-  o.curvature_radius = take_value(&b, 0, 0.2);
-  o.smoothing_iterations = (int)fmin(60, fmax(-5, take_value(&b, 0, 20)));
-  o.confidence_angle = take_value(&b, 0, 90);
-  o.feature_lines = take_8(&b) % 2;
-  o.feature_angle = take_value(&b, 1, 180);
-  o.boundary_lines = take_8(&b) % 2;
+  o.target_points = (int64_t)fmin(3000, fmax(-10, take_value(&b, 4, 1000)));
+  o.largest_spacing = fmax(0.005, take_value(&b, 1, 0.01));
   o.anisotropy = take_value(&b, 1, 0);
   o.adaptivity = take_value(&b, 1, 0);
-  o.pure_quads = take_8(&b) % 2;
-  o.largest_spacing = fmax(0.005, take_value(&b, 1, 0.01));
-  o.largest_valence = (int)fmin(100, fmax(0, take_value(&b, 4, 64)));
-  o.convex_partition = take_8(&b) % 2;
-  o.preserve_topology = take_8(&b) % 2;
-  take(&b, &o.seed, sizeof o.seed);
+  o.feature_angle = take_value(&b, 40, 1);
+  o.largest_valence = (int)fmin(100, fmax(0, take_value(&b, 5, 64)));
+  o.curvature_radius = take_value(&b, 0, 0.2);
+  o.smoothing_iterations = (int)fmin(60, fmax(-5, take_value(&b, 0, 20)));
+  o.confidence_angle = take_value(&b, 30, 90);
+  o.seed = take_8(&b);
+  if (more == 255)
+    take(&b, &o.cookie, sizeof o.cookie);
   double* scale = malloc(m.n_points * sizeof *scale);
-  if (scale && take_8(&b) % 4 == 0)
+  if (scale && flags & 64)
   {
     for (size_t i = 0; i < m.n_points; i++)
       scale[i] = b.left ? pow(o.density == AQR_DENSITY_POINTS ? 1e300 : 4, take_value(&b, -1, 1)) : 1;
@@ -52,12 +54,14 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   }
   aqr_input input = shape_input(&m);
   aqr_status status;
+  int64_t* locked = lock_some(&input, more == 255 ? 0 : more);
   const char* fault = examine(&input, &o, &status);
   if (fault)
   {
     fprintf(stderr, "fault: %s (%s)\n", fault, aqr_status_string(status));
     abort();
   }
+  free(locked);
   free(scale);
   shape_free(&m);
   return 0;
