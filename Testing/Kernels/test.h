@@ -5,7 +5,9 @@
 #ifndef AQR_TEST_H
 #define AQR_TEST_H
 
+#include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct aqr_test
@@ -17,6 +19,48 @@ typedef struct aqr_test
 
 static aqr_test* aqr_tests;
 static int aqr_failures;
+
+/* Blocks of memory held. The linker sends the allocations of the test and of all it is linked with here, the kernels'
+ * own allocator among them; elsewhere than with such a linker nothing is counted. */
+static atomic_long aqr_blocks;
+
+#ifdef AQR_COUNT_BLOCKS
+/* NOLINTBEGIN(bugprone-reserved-identifier): the linker makes these names */
+void* __real_malloc(size_t bytes);
+void* __real_calloc(size_t n, size_t bytes);
+void* __real_realloc(void* old, size_t bytes);
+void __real_free(void* p);
+void* __wrap_malloc(size_t bytes);
+void* __wrap_calloc(size_t n, size_t bytes);
+void* __wrap_realloc(void* old, size_t bytes);
+void __wrap_free(void* p);
+
+void* __wrap_malloc(size_t bytes)
+{
+  void* p = __real_malloc(bytes);
+  aqr_blocks += p != NULL;
+  return p;
+}
+void* __wrap_calloc(size_t n, size_t bytes)
+{
+  void* p = __real_calloc(n, bytes);
+  aqr_blocks += p != NULL;
+  return p;
+}
+void* __wrap_realloc(void* old, size_t bytes)
+{
+  void* p = __real_realloc(old, bytes);
+  aqr_blocks += !old && p;
+  aqr_blocks -= old && !p && !bytes;
+  return p;
+}
+void __wrap_free(void* p)
+{
+  aqr_blocks -= p != NULL;
+  __real_free(p);
+}
+/* NOLINTEND(bugprone-reserved-identifier) */
+#endif
 
 #define AQR_TEST(test_name)                                                                                            \
   static void test_name(void);                                                                                         \
@@ -59,7 +103,13 @@ static int aqr_failures;
       if (argc < 2 || strcmp(argv[1], t->name) == 0)                                                                   \
       {                                                                                                                \
         found++;                                                                                                       \
+        long held = aqr_blocks;                                                                                        \
         t->run();                                                                                                      \
+        if (aqr_blocks != held)                                                                                        \
+        {                                                                                                              \
+          printf("%s: failed: %ld blocks of memory were left behind\n", t->name, aqr_blocks - held);                   \
+          aqr_failures++;                                                                                              \
+        }                                                                                                              \
       }                                                                                                                \
     if (!found)                                                                                                        \
       printf("no test named %s\n", argc > 1 ? argv[1] : "at all");                                                     \
