@@ -216,8 +216,10 @@ aqr_status aqr_symmetry_cut(aqr_context* c, const aqr_surface* s, const aqr_plan
   kept_edges = 3 * half->n_faces;
   *crease = AQR_NEW(c, uint8_t, kept_edges);
   AQR_REQUIRE(half->mirrored && *crease, AQR_OUT_OF_MEMORY);
-  for (size_t h = 0; h < kept_edges; h++)
-    half->mirrored[half->corner[h]] |= w.at_plane[h];
+  /* where the surface touches the plane in one point, without an edge along it, the two sides stay apart */
+  for (aqr_index h = 0; h < kept_edges; h++)
+    if (half->twin[h] == AQR_NONE && w.at_plane[h] && w.at_plane[aqr_next(h)])
+      half->mirrored[half->corner[h]] = half->mirrored[half->corner[aqr_next(h)]] = 1;
   for (size_t h = 0; h < kept_edges; h++)
     (*crease)[h] = w.crease[h] && half->twin[h] != AQR_NONE;
 done:

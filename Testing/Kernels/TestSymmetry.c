@@ -108,6 +108,23 @@ AQR_TEST(output_is_symmetric_to_the_last_digits_with_the_topology_of_the_input)
   check_symmetry("plate with two holes", shape_plate(2, 5, 6, 7), v3(12.5, 7.5, 2.5), x, true);
 }
 
+/* The point that the two sides had in common was not manifold. */
+AQR_TEST(sides_that_touch_the_plane_in_one_point_stay_apart)
+{
+  const double points[] = { 0, 0, 0, 1, 0.5, 0, 1, -0.5, 0 };
+  const int64_t triangle[] = { 0, 2, 1 };
+  aqr_input input = { .number_of_points = 3, .points_d = points, .number_of_triangles = 1, .triangles = triangle };
+  aqr_options o = aqr_default_options();
+  aqr_remesher* r = NULL;
+  o.symmetry = 1;
+  CHECK(aqr_remesher_new(NULL, &r) == AQR_OK && aqr_remesher_set_input(r, &input) == AQR_OK);
+  CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+  survey found = survey_mesh(aqr_remesher_mesh(r));
+  printf("%s, %zu loops, Euler %ld\n", found.flaw ? found.flaw : "valid", found.loops, found.euler);
+  CHECK(!found.flaw && found.loops == 2 && found.euler == 2);
+  aqr_remesher_free(r);
+}
+
 /* An open half is closed by its image, and a plane off the middle makes of the surface what the positive side says. */
 AQR_TEST(the_positive_side_decides_where_the_input_is_not_symmetric)
 {
