@@ -338,7 +338,7 @@ void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, doub
 
 /* ---- the mesh of the half ---- */
 
-bool aqr_symmetry_on_plane(const aqr_surface* half, const aqr_polygon_mesh* m, aqr_index v)
+static bool is_at_plane(const aqr_surface* half, const aqr_polygon_mesh* m, aqr_index v)
 {
   const aqr_place* at = &m->vertices[v].place;
   if (!half->mirrored || !aqr_pm_on_border(m, v))
@@ -352,6 +352,21 @@ bool aqr_symmetry_on_plane(const aqr_surface* half, const aqr_polygon_mesh* m, a
 static bool is_border(const aqr_polygon_mesh* m, aqr_index h)
 {
   return aqr_pm_face(m, h) == AQR_NONE || aqr_pm_face(m, h ^ 1) == AQR_NONE;
+}
+
+/* A vertex none of whose edges run along the plane would have a fan of faces on either side. */
+bool aqr_symmetry_on_plane(const aqr_surface* half, const aqr_polygon_mesh* m, aqr_index v)
+{
+  if (!is_at_plane(half, m, v))
+    return false;
+  aqr_index h = m->vertices[v].out;
+  do
+  {
+    if (is_border(m, h) && is_at_plane(half, m, aqr_pm_to(m, h)))
+      return true;
+    h = aqr_pm_next_around(m, h);
+  } while (h != m->vertices[v].out);
+  return false;
 }
 
 static bool all_on_plane(const aqr_surface* half, const aqr_polygon_mesh* m, aqr_index f)

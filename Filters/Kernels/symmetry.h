@@ -36,7 +36,7 @@ static inline vec3 aqr_plane_normal(const aqr_plane* p, vec3 normal)
   return v3_norm2(along) > 1e-6 ? v3_unit(along) : normal;
 }
 
-/* Whether a vertex of the mesh of a half lies on the plane. */
+/* Whether a vertex of the mesh of a half lies on the plane, where the half and its mirror image are joined. */
 bool aqr_symmetry_on_plane(const aqr_surface* half, const aqr_polygon_mesh* m, aqr_index v);
 
 /* Inserts vertices so that no inner edge joins two vertices on the plane and every face has one off it: else mirroring

@@ -204,6 +204,47 @@ AQR_TEST(no_plane_breaks_the_mesh)
   }
 }
 
+/* A mesh, and a triangle far from it that the diagonal goes by. */
+static shape with_far_triangle(shape m)
+{
+  const double far[9] = { 6, 6, 6, 6.1, 6, 6, 6, 6.1, 6 };
+  shape r = { .n_points = m.n_points + 3, .n_triangles = m.n_triangles + 1 };
+  r.points = malloc(3 * r.n_points * sizeof *r.points);
+  r.triangles = malloc(3 * r.n_triangles * sizeof *r.triangles);
+  memcpy(r.points, m.points, 3 * m.n_points * sizeof *r.points);
+  memcpy(r.points + 3 * m.n_points, far, sizeof far);
+  memcpy(r.triangles, m.triangles, 3 * m.n_triangles * sizeof *r.triangles);
+  for (size_t k = 0; k < 3; k++)
+    r.triangles[3 * m.n_triangles + k] = (int64_t)(m.n_points + k);
+  shape_free(&m);
+  return r;
+}
+
+/* With so few points a half's border leaves the plane; a vertex left alone there once had a fan on either side. */
+AQR_TEST(halves_with_almost_no_points_give_valid_meshes)
+{
+  for (unsigned i = 0; i < 200; i++)
+  {
+    shape m = with_far_triangle(shape_sphere(3, i));
+    aqr_options o = options_for_points(4);
+    set_plane(&o, v3(0, 0, 0), v3(1, 0, 0));
+    o.preserve_topology = i / 2 % 2;
+    o.largest_spacing = 1;
+    o.curvature_radius = 0;
+    o.smoothing_iterations = 0;
+    aqr_input input = shape_input(&m);
+    aqr_remesher* r = NULL;
+    CHECK(aqr_remesher_new(NULL, &r) == AQR_OK && aqr_remesher_set_input(r, &input) == AQR_OK);
+    CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+    survey after = survey_mesh(aqr_remesher_mesh(r));
+    if (after.flaw)
+      printf("%u: %s\n", i, after.flaw);
+    CHECK(!after.flaw);
+    aqr_remesher_free(r);
+    shape_free(&m);
+  }
+}
+
 AQR_TEST(symmetric_output_is_the_same_on_any_number_of_threads)
 {
   shape m = shape_can(14, 17);
