@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "feature_error.h"
 
+#include "morton.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,19 +36,6 @@ typedef struct measuring
   double* distance; /* samples_per_edge per half-edge of the chains */
 } measuring;
 
-static uint32_t spread(uint32_t x)
-{
-  x = (x | x << 16) & 0x030000ffu;
-  x = (x | x << 8) & 0x0300f00fu;
-  x = (x | x << 4) & 0x030c30c3u;
-  return (x | x << 2) & 0x09249249u;
-}
-
-static uint32_t cell(double x)
-{
-  return spread((uint32_t)(1023 * fmin(1, fmax(0, x + 0.5))));
-}
-
 static int by_key(const void* a, const void* b)
 {
   const segment *x = a, *y = b;
@@ -66,7 +55,7 @@ static void list_segments(measuring* w)
     if (!aqr_pm_edge_lives(m, h))
       continue;
     vec3 p = v3_scale(v3_add(start_of(m, h), start_of(m, h ^ 1)), 0.5);
-    w->segments[w->n++] = (segment){ cell(p.x) | cell(p.y) << 1 | cell(p.z) << 2, h };
+    w->segments[w->n++] = (segment){ aqr_morton(p), h };
   }
   qsort(w->segments, w->n, sizeof *w->segments, by_key);
 }

@@ -356,12 +356,13 @@ done:
   return status;
 }
 
-/* Whether the mesh has the Euler number of the cleaned input: rounds of arcs end after a number of them, whether or not
- * every region between the lines is a disk by then. */
-static bool keeps_topology(const aqr_remesher* r)
+/* Whether the output has the Euler number of the cleaned input: rounds of arcs end after a number of them, whether or
+ * not every region between the lines is a disk by then, and with few points the border of a half can leave the plane.
+ */
+static bool keeps_topology(aqr_remesher* r)
 {
   const aqr_polygon_mesh* m = &r->polygons;
-  const aqr_surface* s = r->half.n_faces ? &r->half : &r->base;
+  const aqr_surface* s = solid(r);
   long long chi = 0, wanted = (long long)s->n_points + (long long)s->n_faces;
   for (size_t h = 0; h < m->n_half_edges; h += 2)
     chi -= m->half_edges[h].from != AQR_NONE;
@@ -370,6 +371,12 @@ static bool keeps_topology(const aqr_remesher* r)
   chi += (long long)count_vertices(m);
   for (aqr_index h = 0; h < 3 * s->n_faces; h++)
     wanted -= s->twin[h] == AQR_NONE || h < s->twin[h];
+  if (s->mirrored)
+  {
+    long long joint = aqr_symmetry_joint(r->surface, m), joint_wanted = aqr_symmetry_joint_of_surface(s);
+    if (joint != joint_wanted || aqr_symmetry_loops(r->surface, m) != s->mirrored_loops)
+      return false;
+  }
   return chi == wanted;
 }
 

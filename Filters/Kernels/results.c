@@ -61,8 +61,6 @@ static vec3 mirror(const aqr_plane* plane, vec3 p)
   return v3_madd(p, -2 * aqr_plane_height(plane, p), plane->normal);
 }
 
-static const double steepest = 0.3; /* sine of the angle from which on a normal on the plane is that of a crease */
-
 /* A vertex of the half's border becomes one inside the whole: exactly on the plane, and of the kind that the creases
  * and borders that meet it there and their mirror images make it. */
 static void put_on_plane(
@@ -81,7 +79,7 @@ static void put_on_plane(
       features += m->edge_type[h >> 1] == AQR_LINE_FEATURE;
     h = aqr_pm_next_around(m, h);
   } while (h != m->vertices[v].out);
-  bool ridge = r->done.feature_lines && fabs(v3_dot(n, plane->normal)) > steepest;
+  bool ridge = r->done.feature_lines && aqr_plane_creases(plane, n);
   v3_store(point, v3_madd(p, -aqr_plane_height(plane, p), plane->normal));
   v3_store(normal, aqr_plane_normal(plane, n));
   if (border)

@@ -29,6 +29,7 @@ typedef struct aqr_surface
   uint8_t* locked;    /* 3 * n_faces: 1 where the half-edge is to be a crease whatever its angle; NULL: none. Only the
                          cleaned surface has it, cuts and copies do not */
   uint8_t* mirrored;  /* n_clean: 1 for points on the plane over which this half will be mirrored; NULL: no plane */
+  size_t mirrored_loops;                        /* borders of this half that lie wholly on that plane */
   size_t faces_held, points_held, origins_held; /* what the arrays per face, per point, and `origin` have room for */
   vec3 centre;                                  /* input = centre + diagonal * point */
   double diagonal;

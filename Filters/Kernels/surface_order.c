@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Numbers faces and points along a space-filling curve: what lies together on the surface lies together in memory,
  * whatever order the input came in. */
+#include "morton.h"
 #include "surface.h"
 
 #include <string.h>
@@ -11,23 +12,6 @@ enum
   digits = 1 << digit_bits,
   passes = 3
 };
-
-/* Spreads the lower ten bits of x to every third bit. */
-static uint32_t spread(uint32_t x)
-{
-  x = (x | x << 16) & 0x030000ffu;
-  x = (x | x << 8) & 0x0300f00fu;
-  x = (x | x << 4) & 0x030c30c3u;
-  return (x | x << 2) & 0x09249249u;
-}
-
-/* The Morton code of a point of the unit box. */
-static uint32_t morton(vec3 p)
-{
-  uint32_t x = (uint32_t)(1023 * fmin(1, fmax(0, p.x + 0.5))), y = (uint32_t)(1023 * fmin(1, fmax(0, p.y + 0.5)));
-  uint32_t z = (uint32_t)(1023 * fmin(1, fmax(0, p.z + 0.5)));
-  return spread(x) | spread(y) << 1 | spread(z) << 2;
-}
 
 typedef struct keyed
 {
@@ -105,7 +89,7 @@ aqr_status aqr_surface_arrange(aqr_context* c, aqr_surface* s)
   keyed *order = AQR_NEW(c, keyed, n), *spare = AQR_NEW(c, keyed, n);
   AQR_REQUIRE(order && spare, AQR_OUT_OF_MEMORY);
   for (size_t f = 0; f < n; f++)
-    order[f] = (keyed){ morton(aqr_point(s, s->corner[3 * f])), (aqr_index)f };
+    order[f] = (keyed){ aqr_morton(aqr_point(s, s->corner[3 * f])), (aqr_index)f };
   AQR_TRY(sort_by_key(c, order, spare, n));
   AQR_DROP(c, order, n);
   AQR_TRY(renumber(c, s, spare));

@@ -181,6 +181,26 @@ static void pair_pieces(cutter* w)
       w->half->twin[w->piece[h]] = w->piece[s->twin[h]];
 }
 
+/* Borders that lie wholly on the plane. Forgets what is at the plane on the way. */
+static size_t count_loops(cutter* w)
+{
+  const aqr_surface* t = w->half;
+  size_t loops = 0;
+  for (aqr_index first = 0; first < 3 * t->n_faces; first++)
+  {
+    aqr_index h = first;
+    while (w->at_plane[h] && aqr_on_plane(t, h))
+    {
+      w->at_plane[h] = 0;
+      h = aqr_next(h);
+      while (t->twin[h] != AQR_NONE)
+        h = aqr_next(t->twin[h]);
+      loops += h == first;
+    }
+  }
+  return loops;
+}
+
 aqr_status aqr_symmetry_cut(aqr_context* c, const aqr_surface* s, const aqr_plane* plane, const uint8_t* is_crease,
   aqr_surface* half, uint8_t** crease)
 {
@@ -220,6 +240,7 @@ aqr_status aqr_symmetry_cut(aqr_context* c, const aqr_surface* s, const aqr_plan
   for (aqr_index h = 0; h < kept_edges; h++)
     if (half->twin[h] == AQR_NONE && w.at_plane[h] && w.at_plane[aqr_next(h)])
       half->mirrored[half->corner[h]] = half->mirrored[half->corner[aqr_next(h)]] = 1;
+  half->mirrored_loops = count_loops(&w);
   for (size_t h = 0; h < kept_edges; h++)
     (*crease)[h] = w.crease[h] && half->twin[h] != AQR_NONE;
 done:
@@ -311,15 +332,13 @@ done:
 
 /* ---- the field of the half ---- */
 
-static const double steepest = 0.3; /* sine of the angle from which on a normal on the plane is that of a crease */
-
 void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, double* tensors, double* normals)
 {
   vec3 n = plane->normal;
   for (size_t v = 0; v < half->n_points; v++)
   {
     vec3 normal = v3_load(normals + 3 * v);
-    if (!half->mirrored[half->clean[v]] || fabs(v3_dot(normal, n)) > steepest)
+    if (!half->mirrored[half->clean[v]] || aqr_plane_creases(plane, normal))
       continue;
     double* t = tensors + 6 * v;
     /* what couples the plane's normal with directions along the plane changes its sign in the mirror */
@@ -367,6 +386,48 @@ bool aqr_symmetry_on_plane(const aqr_surface* half, const aqr_polygon_mesh* m, a
     h = aqr_pm_next_around(m, h);
   } while (h != m->vertices[v].out);
   return false;
+}
+
+static bool is_joint(const aqr_surface* half, const aqr_polygon_mesh* m, aqr_index h)
+{
+  return aqr_pm_edge_lives(m, h) && aqr_pm_face(m, h) == AQR_NONE && is_at_plane(half, m, aqr_pm_from(m, h)) &&
+         is_at_plane(half, m, aqr_pm_to(m, h));
+}
+
+long long aqr_symmetry_joint(const aqr_surface* half, const aqr_polygon_mesh* m)
+{
+  long long chi = 0;
+  for (aqr_index v = 0; v < m->n_vertices; v++)
+    chi += m->vertices[v].out != AQR_NONE && aqr_symmetry_on_plane(half, m, v);
+  for (aqr_index h = 0; h < m->n_half_edges; h++)
+    chi -= is_joint(half, m, h);
+  return chi;
+}
+
+size_t aqr_symmetry_loops(const aqr_surface* half, const aqr_polygon_mesh* m)
+{
+  size_t loops = 0;
+  for (aqr_index first = 0; first < m->n_half_edges; first++)
+  {
+    if (!is_joint(half, m, first))
+      continue;
+    /* counted at its smallest half-edge */
+    aqr_index h = aqr_pm_next(m, first);
+    while (h > first && is_joint(half, m, h))
+      h = aqr_pm_next(m, h);
+    loops += h == first;
+  }
+  return loops;
+}
+
+long long aqr_symmetry_joint_of_surface(const aqr_surface* half)
+{
+  long long chi = 0;
+  for (size_t v = 0; v < half->n_clean; v++)
+    chi += half->mirrored[v];
+  for (aqr_index h = 0; h < 3 * half->n_faces; h++)
+    chi -= aqr_on_plane(half, h);
+  return chi;
 }
 
 static bool all_on_plane(const aqr_surface* half, const aqr_polygon_mesh* m, aqr_index f)
