@@ -269,8 +269,8 @@ public:
 
   ///@{
   /**
-   * A point of the plane of symmetry, and the direction across it, of any length but 0. Default: (0, 0, 0)
-   * and (1, 0, 0).
+   * A point of the plane of symmetry, within a million diagonals of the surface, and the direction across it,
+   * of any length but 0. Default: (0, 0, 0) and (1, 0, 0).
    */
   vtkSetVector3Macro(SymmetryOrigin, double);
   vtkGetVector3Macro(SymmetryOrigin, double);

@@ -141,8 +141,9 @@ extern "C"
     int symmetry;              /**< 0 or 1, 0. 1: the mesh is symmetric about a plane. What lies on the plane's positive
                                   side is remeshed and mirrored, whatever lies on the other; the field and the
                                   lines are those of that side */
-    double symmetry_origin[3]; /**< 0 0 0: a point of the plane, in the input's coordinates */
-    double symmetry_normal[3]; /**< 1 0 0: points to the positive side; any length above 0 */
+    double symmetry_origin[3]; /**< 0 0 0: a point of the plane, in the input's coordinates, within a million diagonals
+                                  of the surface */
+    double symmetry_normal[3]; /**< 1 0 0: points to the positive side; any finite length above 0 */
     int largest_valence;       /**< [4, 64], 5: faces with more corners are split (paper 5.2) */
     int convex_partition;      /**< 0 or 1, 1: concave faces are split (paper 5.2) */
     int preserve_topology;     /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may

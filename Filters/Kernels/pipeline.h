@@ -51,10 +51,20 @@ struct aqr_remesher
   bool has_result;
 };
 
+/* Of any finite length above 0: by a power of two, which does not round, it is brought to where squares neither
+ * overflow nor vanish. */
+static inline vec3 aqr_symmetry_normal(const aqr_options* o)
+{
+  const double* n = o->symmetry_normal;
+  int exponent;
+  frexp(fmax(fmax(fabs(n[0]), fabs(n[1])), fabs(n[2])), &exponent);
+  return v3_unit(v3(ldexp(n[0], -exponent), ldexp(n[1], -exponent), ldexp(n[2], -exponent)));
+}
+
 /* The plane that the options of the last run name, in the input's coordinates. */
 static inline aqr_plane aqr_symmetry_plane(const aqr_options* o)
 {
-  return (aqr_plane){ v3_load(o->symmetry_origin), v3_unit(v3_load(o->symmetry_normal)) };
+  return (aqr_plane){ v3_load(o->symmetry_origin), aqr_symmetry_normal(o) };
 }
 
 /* Fill and release the views (results.c). */

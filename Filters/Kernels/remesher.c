@@ -23,7 +23,8 @@ enum
   most_cuts = 24     /* rounds of arcs that keep the topology */
 };
 
-static const double quads_per_face = 4; /* of quads cut by their centres and the middles of their edges */
+static const double farthest_plane = 1e6; /* of symmetry, in diagonals: beyond, mirror images lose their shape */
+static const double quads_per_face = 4;   /* of quads cut by their centres and the middles of their edges */
 
 static const double longest_edge = 0.025; /* edges longer than this are halved (paper 3.2): half the default spacing */
 static const double corner_angle = 45;    /* a chain turning more sharply has a corner there */
@@ -218,6 +219,12 @@ static aqr_status cut_half(aqr_remesher* r, const aqr_options* o, uint8_t** crea
   aqr_plane plane = aqr_symmetry_plane(o);
   uint8_t* kept = NULL;
   plane.origin = v3_scale(v3_sub(plane.origin, r->base.centre), scale);
+  if (!(v3_norm(plane.origin) <= farthest_plane))
+  {
+    snprintf(c->message, sizeof c->message, "symmetry_origin lies more than %g diagonals of the surface from it",
+      farthest_plane);
+    return AQR_BAD_OPTION;
+  }
   aqr_status status = aqr_symmetry_unmatched(c, &r->base, &plane, &r->report.asymmetric_points);
   r->surface_report.asymmetric_points = r->report.asymmetric_points;
   if (status == AQR_OK)
@@ -537,8 +544,11 @@ static aqr_status check_options(aqr_remesher* r, const aqr_options* o)
     if (status != AQR_OK)
       return status;
   }
-  const double *at = o->symmetry_origin, *up = o->symmetry_normal, length = v3_norm(v3_load(up));
-  if (o->symmetry && !(isfinite(at[0]) && isfinite(at[1]) && isfinite(at[2]) && isfinite(length) && length > 0))
+  const double *at = o->symmetry_origin, *up = o->symmetry_normal;
+  bool good = fmax(fmax(fabs(up[0]), fabs(up[1])), fabs(up[2])) > 0;
+  for (unsigned k = 0; k < 3; k++)
+    good &= isfinite(at[k]) && isfinite(up[k]);
+  if (o->symmetry && !good)
   {
     snprintf(r->context.message, sizeof r->context.message, "%s",
       "symmetry_origin and symmetry_normal must be finite, and the normal no zero vector");

@@ -167,20 +167,26 @@ static const char* spoil(wrong* w, int what, int* kind)
     case 22:
       w->report.components = 7;
       return "the report's components are not those of the surface";
+    case 23: /* with symmetry */
+      w->points[3] += 1e-4;
+      return "a point has no mirror image";
     default:
       return NULL;
   }
 }
 
-AQR_TEST(a_result_that_is_wrong_in_one_place_is_found_out)
+static void check_that_wrongs_are_found(int symmetry)
 {
   shape m = shape_torus(12, 1);
   aqr_input input = shape_input(&m);
   aqr_options o = options_for_points(200);
+  o.symmetry = symmetry;
   aqr_remesher* r = remesh(&m, &o);
   CHECK(!examine_results(aqr_remesher_mesh(r), aqr_remesher_field(r), aqr_remesher_report(r), &input, &o));
-  for (int what = 0; what < 23; what++)
+  for (int what = 0; what < 24; what++)
   {
+    if (symmetry ? what == 11 || what == 22 : what == 23) /* the report is on the input, the surface is of a half */
+      continue;
     int kind;
     wrong w = copy_result(r);
     const char* wanted = spoil(&w, what, &kind);
@@ -193,6 +199,32 @@ AQR_TEST(a_result_that_is_wrong_in_one_place_is_found_out)
   }
   aqr_remesher_free(r);
   shape_free(&m);
+}
+
+AQR_TEST(a_result_that_is_wrong_in_one_place_is_found_out)
+{
+  check_that_wrongs_are_found(0);
+}
+
+AQR_TEST(a_symmetric_result_that_is_wrong_in_one_place_is_found_out)
+{
+  check_that_wrongs_are_found(1);
+}
+
+/* Half an open box and its image: joined at what lies on the plane of the border. */
+AQR_TEST(a_half_is_judged_together_with_its_mirror_image)
+{
+  double points[] = { 0, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 0 };
+  const int64_t offsets[] = { 0, 3, 6 }, corners[] = { 0, 1, 3, 0, 3, 2 };
+  const judge_plane plane = { { 0, 7, -3 }, { 1, 0, 0 } };
+  verdict v = judge_mirrored(4, points, 2, offsets, corners, &plane); /* 1 and 2 are joined to 0 along the plane */
+  CHECK(!v.fault && v.euler == 1 && v.boundary_loops == 1 && v.components == 1);
+  points[0] = 1; /* touches the plane in two points, and along no edge */
+  v = judge_mirrored(4, points, 2, offsets, corners, &plane);
+  CHECK(!v.fault && v.euler == 2 && v.boundary_loops == 2 && v.components == 2);
+  points[0] = -1;
+  v = judge_mirrored(4, points, 2, offsets, corners, &plane);
+  CHECK(v.fault && strstr(v.fault, "wrong side"));
 }
 
 AQR_TEST(a_handle_that_is_lost_is_found_out)

@@ -153,6 +153,36 @@ AQR_TEST(the_positive_side_decides_where_the_input_is_not_symmetric)
   shape_free(&m);
 }
 
+/* Squares of the normal overflowed or vanished; mirror images in a plane out of sight had no shape, or were infinite.
+ */
+AQR_TEST(planes_of_any_length_of_normal_serve_and_those_out_of_sight_are_refused)
+{
+  const vec3 normals[] = { { 3, -1, 2 }, { 0x3p900, -0x1p900, 0x2p900 }, { 0x3p-900, -0x1p-900, 0x2p-900 },
+    { 0x3p-1074, -0x1p-1074, 0x2p-1074 } };
+  const vec3 away[] = { { 1e7, 0, 0 }, { -1e7, 0, 0 }, { 0, 1e20, 0 }, { -1e300, 0, 0 }, { 0, 0, -1.7e308 } };
+  shape m = shape_torus(6, 3);
+  aqr_options o = options_for_points(200);
+  set_plane(&o, v3(0.1, 0, 0), normals[0]);
+  aqr_remesher* r = remesh(&m, &o);
+  uint64_t once = hash_results(r);
+  for (size_t i = 1; i < sizeof normals / sizeof *normals; i++)
+  {
+    set_plane(&o, v3(0.1, 0, 0), normals[i]);
+    CHECK(aqr_remesher_run(r, &o) == AQR_OK && is_symmetric(aqr_remesher_mesh(r), &o));
+    CHECK(once != 0 && hash_results(r) == once);
+  }
+  for (size_t i = 0; i < sizeof away / sizeof *away; i++)
+  {
+    set_plane(&o, away[i], v3(1, 0, 0));
+    CHECK(aqr_remesher_run(r, &o) == AQR_BAD_OPTION && strstr(aqr_remesher_message(r), "diagonals"));
+    CHECK(!aqr_remesher_mesh(r));
+  }
+  set_plane(&o, v3(-1e3, 0, 0), v3(1, 0, 0)); /* far, but in sight */
+  CHECK(aqr_remesher_run(r, &o) == AQR_OK && !survey_mesh(aqr_remesher_mesh(r)).flaw);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
 AQR_TEST(points_without_a_mirror_image_are_counted)
 {
   shape m = shape_grid(40, 16, true, true, 0, 1, place_on_torus);

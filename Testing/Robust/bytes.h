@@ -42,8 +42,32 @@ static inline double take_double(bytes* b)
   return x;
 }
 
-/* Options within their ranges, coarse enough for many runs a second: four bytes. */
-static inline aqr_options take_mild_options(bytes* b)
+/* Symmetry about a plane by the mean of all points or another at or near one of them, across a direction of small whole
+ * numbers; 0 is the mean and x. */
+static inline void set_plane(aqr_options* o, const aqr_input* in, uint32_t code)
+{
+  const double toward[] = { 0, 1, 0.5, -0.4 }; /* 1: exactly through a point */
+  size_t n = in->number_of_points, p = code / 2048 % (n ? n : 1);
+  if (!n)
+    return;
+  o->symmetry = 1;
+  for (size_t k = 0; k < 3; k++)
+  {
+    double sum = 0, at = in->points_f ? (double)in->points_f[3 * p + k] : in->points_d[3 * p + k];
+    for (size_t i = 0; i < n; i++)
+      sum += in->points_f ? (double)in->points_f[3 * i + k] : in->points_d[3 * i + k];
+    o->symmetry_normal[k] = (double)((code >> 3 * k & 7) ^ 4) - 4;
+    o->symmetry_origin[k] = sum / (double)n + toward[code >> 9 & 3] * (at - sum / (double)n);
+    if ((code >> 9 & 3) == 1)
+      o->symmetry_origin[k] = at;
+  }
+  if ((code & 511) == 0)
+    o->symmetry_normal[0] = 1;
+}
+
+/* Options within their ranges, coarse enough for many runs a second: four bytes, and one of `code` for set_plane()
+ * where the highest bit of the third asks for symmetry. */
+static inline aqr_options take_mild_options(bytes* b, uint32_t* code)
 {
   aqr_options o = aqr_default_options();
   uint8_t flags = take_8(b), fineness = take_8(b), angle = take_8(b), rest = take_8(b);
@@ -57,7 +81,9 @@ static inline aqr_options take_mild_options(bytes* b)
   o.largest_spacing = flags & 128 ? 0.3 : 0.1;
   o.tolerance = 0.0265 - 0.0001 * fineness; /* zeros are coarse, and fast */
   o.target_points = 4 + 2 * fineness;
-  o.feature_angle = angle ? angle * (180.0 / 255) : 40;
+  o.feature_angle = angle % 128 ? angle % 128 * (180.0 / 127) : 40;
+  o.symmetry = angle >> 7;
+  *code = fineness | (uint32_t)rest << 9;
   o.largest_valence = 4 + rest % 8;
   o.pure_quads = rest >> 6 & 1;
   o.seed = rest / 8;

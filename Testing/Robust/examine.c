@@ -70,20 +70,118 @@ static uint64_t hash_results(const aqr_remesher* r)
 /* Points stray from the surface by about the height of the arc above an edge. */
 static const double stray = 0.1;
 
-static const char* check_box(const aqr_mesh* m, const aqr_field_view* f)
+/* A box, and a margin as a share of its diagonal. */
+typedef struct box
 {
-  double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY }, margin = 0;
-  for (size_t i = 0; i < 3 * f->number_of_points; i++)
-  {
-    low[i % 3] = fmin(low[i % 3], f->points[i]);
-    high[i % 3] = fmax(high[i % 3], f->points[i]);
-  }
+  double low[3], high[3], diagonal;
+} box;
+
+static box no_box(void)
+{
+  return (box){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY }, 0 };
+}
+
+static void widen(box* b, const double* p)
+{
+  b->diagonal = 0;
   for (int k = 0; k < 3; k++)
-    margin = hypot(margin, high[k] - low[k]);
-  margin *= stray;
-  for (size_t i = 0; i < 3 * m->number_of_points; i++)
-    if (!(m->points[i] >= low[i % 3] - margin && m->points[i] <= high[i % 3] + margin))
-      return "a point lies outside the bounding box";
+  {
+    b->low[k] = fmin(b->low[k], p[k]);
+    b->high[k] = fmax(b->high[k], p[k]);
+    b->diagonal = hypot(b->diagonal, b->high[k] - b->low[k]);
+  }
+}
+
+static int holds(const box* b, const double* points, size_t n_points, double share)
+{
+  for (size_t i = 0; i < 3 * n_points; i++)
+    if (!(points[i] >= b->low[i % 3] - share * b->diagonal && points[i] <= b->high[i % 3] + share * b->diagonal))
+      return 0;
+  return 1;
+}
+
+static judge_plane plane_of(const aqr_options* o)
+{
+  judge_plane p;
+  const double* n = o->symmetry_normal;
+  double most = fmax(fmax(fabs(n[0]), fabs(n[1])), fabs(n[2]));
+  double length = hypot(hypot(n[0] / most, n[1] / most), n[2] / most);
+  for (int k = 0; k < 3; k++)
+  {
+    p.origin[k] = o->symmetry_origin[k];
+    p.normal[k] = n[k] / most / length;
+  }
+  return p;
+}
+
+static void mirror_point(const judge_plane* plane, const double* p, double* q)
+{
+  double d = judge_height(plane, p);
+  for (int k = 0; k < 3; k++)
+    q[k] = p[k] - 2 * d * plane->normal[k];
+}
+
+static const char* check_box(const aqr_mesh* m, const aqr_field_view* f, const aqr_options* o)
+{
+  box b = no_box();
+  const judge_plane plane = plane_of(o);
+  for (size_t i = 0; i < f->number_of_points; i++)
+  {
+    double image[3];
+    widen(&b, f->points + 3 * i);
+    mirror_point(&plane, f->points + 3 * i, image);
+    if (o->symmetry)
+      widen(&b, image);
+  }
+  return holds(&b, m->points, m->number_of_points, stray) ? NULL : "a point lies outside the bounding box";
+}
+
+static const char* check_cleaned_box(const aqr_field_view* f, const aqr_input* input, const aqr_options* o)
+{
+  /* a corner near a plane of symmetry is moved onto it: by a hundredth of an edge at most, which is no longer than a
+   * fortieth of the diagonal */
+  const double margin = o->symmetry ? 3e-4 : 1e-5;
+  box b = no_box();
+  for (size_t i = 0; i < 3 * input->number_of_triangles; i++)
+  {
+    size_t v = 3 * (size_t)input->triangles[i];
+    double p[3];
+    for (size_t k = 0; k < 3; k++)
+      p[k] = input->points_f ? (double)input->points_f[v + k] : input->points_d[v + k];
+    widen(&b, p);
+  }
+  return holds(&b, f->points, f->number_of_points, margin) ? NULL : "the surface leaves the bounding box of the input";
+}
+
+enum
+{
+  most_compared = 1500 /* points, each with all */
+};
+
+static const char* check_symmetry(const aqr_mesh* m, const aqr_options* o)
+{
+  const judge_plane plane = plane_of(o);
+  size_t n = m->number_of_points;
+  box b = no_box();
+  double reach = 0;
+  for (size_t i = 0; i < n; i++)
+  {
+    widen(&b, m->points + 3 * i);
+    for (int k = 0; k < 3; k++)
+      reach = fmax(reach, fmax(fabs(m->points[3 * i + (size_t)k]), fabs(o->symmetry_origin[k])));
+  }
+  double near = fmax(1e-9 * b.diagonal, 1e-14 * reach);
+  for (size_t i = 0; i < n && n <= most_compared; i++)
+  {
+    double q[3];
+    mirror_point(&plane, m->points + 3 * i, q);
+    size_t j = 0;
+    while (j < n && !(fabs(m->points[3 * j] - q[0]) <= near && fabs(m->points[3 * j + 1] - q[1]) <= near &&
+                      fabs(m->points[3 * j + 2] - q[2]) <= near))
+      j++;
+    if (j == n)
+      return "a point has no mirror image";
+  }
   return NULL;
 }
 
@@ -127,7 +225,8 @@ static const char* check_field(const aqr_field_view* f)
   return NULL;
 }
 
-static verdict judge_surface(const aqr_field_view* f)
+/* With symmetry the field is that of a half, and the surface that half and its image. */
+static verdict judge_surface(const aqr_field_view* f, const aqr_options* o)
 {
   size_t n = f->number_of_triangles;
   int64_t* offsets = malloc((n + 1) * sizeof *offsets);
@@ -139,7 +238,9 @@ static verdict judge_surface(const aqr_field_view* f)
       offsets[i] = (int64_t)(3 * i);
     for (size_t i = 0; i < 3 * n; i++)
       corners[i] = f->triangles[i];
-    v = judge_mesh(f->number_of_points, f->points, n, offsets, corners);
+    const judge_plane plane = plane_of(o);
+    v = o->symmetry ? judge_mirrored(f->number_of_points, f->points, n, offsets, corners, &plane)
+                    : judge_mesh(f->number_of_points, f->points, n, offsets, corners);
   }
   free(offsets);
   free(corners);
@@ -149,21 +250,25 @@ static verdict judge_surface(const aqr_field_view* f)
 const char* examine_results(const aqr_mesh* m, const aqr_field_view* f, const aqr_report* report,
   const aqr_input* input, const aqr_options* options)
 {
-  verdict surface = judge_surface(f);
+  verdict surface = judge_surface(f, options);
   verdict mesh = judge_mesh(m->number_of_points, m->points, m->number_of_faces, m->offsets, m->connectivity);
   const char* fault = mesh.fault ? mesh.fault : surface.fault;
-  if (!fault && options->preserve_topology)
+  if (!fault && options->preserve_topology && !(options->symmetry && report->topology_lost))
     fault = judge_pair(&surface, &mesh);
-  if (!fault && surface.boundary_loops != report->boundary_loops)
+  if (!fault && !options->symmetry && surface.boundary_loops != report->boundary_loops)
     fault = "the report's boundary loops are not those of the surface";
-  if (!fault && surface.components != report->components)
+  if (!fault && !options->symmetry && surface.components != report->components)
     fault = "the report's components are not those of the surface";
   if (!fault)
     fault = check_attributes(m, input);
   if (!fault)
     fault = check_field(f);
   if (!fault)
-    fault = check_box(m, f);
+    fault = check_box(m, f, options);
+  if (!fault)
+    fault = check_cleaned_box(f, input, options);
+  if (!fault && options->symmetry)
+    fault = check_symmetry(m, options);
   if (fault)
     fprintf(stderr,
       "surface: %zu points, Euler %ld, %zu loops, %zu components; mesh: %zu points, %ld, %zu, %zu; "
@@ -174,13 +279,18 @@ const char* examine_results(const aqr_mesh* m, const aqr_field_view* f, const aq
   return fault;
 }
 
-static const char* check_results(const aqr_remesher* r, const aqr_input* input, const aqr_options* o)
+/* `cleaned`: what set_input reported of the whole input. */
+static const char* check_results(
+  const aqr_remesher* r, const aqr_input* input, const aqr_options* o, const aqr_report* cleaned)
 {
+  const aqr_report* report = aqr_remesher_report(r);
   const aqr_mesh* m = aqr_remesher_mesh(r);
   const aqr_field_view* f = aqr_remesher_field(r);
   if (!m || !f || !aqr_remesher_lines(r))
     return "no result after success";
-  return examine_results(m, f, aqr_remesher_report(r), input, o);
+  if (report->boundary_loops != cleaned->boundary_loops || report->components != cleaned->components)
+    return "the run changed the report on the input";
+  return examine_results(m, f, report, input, o);
 }
 
 static const char* run_once(
@@ -194,13 +304,17 @@ static const char* run_once(
   *status = aqr_remesher_new(&hooks, &r);
   if (*status == AQR_OK)
     *status = aqr_remesher_set_input(r, input);
+  aqr_report cleaned = { 0 };
   if (*status == AQR_OK)
+  {
+    cleaned = *aqr_remesher_report(r);
     *status = aqr_remesher_run(r, options);
+  }
   if (*status == AQR_INTERNAL)
     fault = "an invariant of the library did not hold";
   else if (*status == AQR_OK)
   {
-    fault = check_results(r, input, options);
+    fault = check_results(r, input, options, &cleaned);
     if (!fault)
       *hash = hash_results(r);
   }

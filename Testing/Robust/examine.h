@@ -8,7 +8,8 @@
 
 /* NULL when the library did as it promises: refused with a status other than AQR_INTERNAL and left no result, or
  * answered with a valid mesh of the repaired surface inside its bounding box up to the tolerance, equal bytes from
- * two runs in different order, no byte left. *status: what the run said. */
+ * two runs in different order, no byte left. With symmetry the surface is its half and the mirror image, and so is the
+ * mesh; a topology lost there is allowed where the report says so. *status: what the run said. */
 const char* examine(const aqr_input* input, const aqr_options* options, aqr_status* status);
 
 /* The part of it that looks at one result. */

@@ -13,12 +13,15 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
   bytes b = { data, size };
-  aqr_options options = take_mild_options(&b);
+  uint32_t code;
+  aqr_options options = take_mild_options(&b, &code);
   shape m = mutate_base(take_8(&b));
   if (mutate(&m, &b))
   {
     aqr_input input = shape_input(&m);
     int64_t* locked = lock_some(&input, options.seed);
+    if (options.symmetry)
+      set_plane(&options, &input, code);
     aqr_status status;
     const char* fault = examine(&input, &options, &status);
     if (fault)

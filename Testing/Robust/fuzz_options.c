@@ -55,6 +55,15 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   aqr_input input = shape_input(&m);
   aqr_status status;
   int64_t* locked = lock_some(&input, more == 255 ? 0 : more);
+  if (flags & 128)
+  {
+    set_plane(&o, &input, take_16(&b) | (uint32_t)take_8(&b) << 16);
+    for (size_t k = 0; k < 3 && more == 254; k++)
+    {
+      o.symmetry_origin[k] = take_double(&b);
+      o.symmetry_normal[k] = take_double(&b);
+    }
+  }
   const char* fault = examine(&input, &o, &status);
   if (fault)
   {

@@ -12,7 +12,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
   bytes b = { data, size };
-  aqr_options options = take_mild_options(&b);
+  uint32_t code;
+  aqr_options options = take_mild_options(&b, &code);
   uint16_t n = take_16(&b);
   int whole = n >> 15;
   size_t width = whole ? 1 : sizeof(float), n_points = n & 0x7fff;
@@ -34,6 +35,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
       .number_of_points = n_points, .points_f = points, .number_of_triangles = n_triangles, .triangles = triangles
     };
     int64_t* locked = lock_some(&input, options.seed);
+    if (options.symmetry)
+      set_plane(&options, &input, code);
     aqr_status status;
     const char* fault = examine(&input, &options, &status);
     if (fault)

@@ -165,17 +165,32 @@ static size_t count_loops(size_t n_points, bench* b)
   return loops;
 }
 
+static bool new_bench(bench* b, size_t n_points, size_t n_faces, size_t n_corners)
+{
+  size_t most = n_corners > n_points ? n_corners : n_points;
+  *b = (bench){ malloc(n_corners * sizeof(side)), malloc(n_faces * sizeof(uint64_t)), malloc(most * sizeof(int64_t)),
+    malloc(most * sizeof(size_t)), malloc(n_points * sizeof(int64_t)) };
+  return b->sides && b->hash && b->sorted && b->parent && b->outgoing;
+}
+
+static void free_bench(bench* b)
+{
+  free(b->sides);
+  free(b->hash);
+  free(b->sorted);
+  free(b->parent);
+  free(b->outgoing);
+}
+
 verdict judge_mesh(
   size_t n_points, const double* points, size_t n_faces, const int64_t* offsets, const int64_t* connectivity)
 {
   verdict v = { "it is empty", 0, 0, 0 };
   if (!n_points || !n_faces || offsets[n_faces] < 0)
     return v;
-  size_t n_corners = (size_t)offsets[n_faces], most = n_corners > n_points ? n_corners : n_points;
-  size_t n_edges = 0, n_boundary = 0;
-  bench b = { malloc(n_corners * sizeof(side)), malloc(n_faces * sizeof(uint64_t)), malloc(most * sizeof(int64_t)),
-    malloc(most * sizeof(size_t)), malloc(n_points * sizeof(int64_t)) };
-  v.fault = b.sides && b.hash && b.sorted && b.parent && b.outgoing
+  size_t n_corners = (size_t)offsets[n_faces], n_edges = 0, n_boundary = 0;
+  bench b;
+  v.fault = new_bench(&b, n_points, n_faces, n_corners)
               ? check_faces(n_points, points, n_faces, offsets, connectivity, &b)
               : "the judge has no memory";
   if (!v.fault)
@@ -189,11 +204,102 @@ verdict judge_mesh(
       join(b.parent, (size_t)b.sides[i].low, (size_t)b.sides[i].high);
     v.components = count_roots(b.parent, n_points);
   }
-  free(b.sides);
-  free(b.hash);
-  free(b.sorted);
-  free(b.parent);
-  free(b.outgoing);
+  free_bench(&b);
+  return v;
+}
+
+double judge_height(const judge_plane* plane, const double* point)
+{
+  double d = 0;
+  for (int k = 0; k < 3; k++)
+    d += (point[k] - plane->origin[k]) * plane->normal[k];
+  return d;
+}
+
+/* As far from the plane counts as on it: far below a millionth of the size, within which points are moved there. */
+static double rounding_of(size_t n_points, const double* points, const judge_plane* plane)
+{
+  double reach = 0, size = 0;
+  for (size_t i = 0; i < 3 * n_points; i++)
+  {
+    reach = fmax(reach, fmax(fabs(points[i]), fabs(plane->origin[i % 3])));
+    size = fmax(size, fabs(points[i] - points[i % 3]));
+  }
+  return fmax(1e-7 * size, 1e-14 * reach);
+}
+
+/* The sides are sorted. A border's sides on the plane are joined to their images there, the others go round twice:
+ * along the mesh, and the other way along its image, whose points come behind the mesh's. */
+static void join_images(size_t n, size_t n_corners, const int64_t* connectivity, const bool* on, verdict* v, bench* b)
+{
+  int64_t* image = b->sorted;
+  for (size_t i = 0; i < n; i++)
+    image[i] = (int64_t)(n + i);
+  v->euler *= 2;
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0, same; i < n_corners; i += same)
+    {
+      const side* s = b->sides + i;
+      for (same = 1; i + same < n_corners && s[same].low == s->low && s[same].high == s->high; same++)
+        ;
+      int64_t from = connectivity[s->corner], to = connectivity[s->next];
+      if (same == 2)
+        continue;
+      if (!on[from] || !on[to])
+      {
+        if (pass == 0)
+          continue;
+        b->outgoing[from] = to;
+        b->outgoing[image[to]] = image[from];
+      }
+      else if (pass == 0)
+      {
+        v->euler += 1 - (image[from] != from) - (image[to] != to);
+        image[from] = from;
+        image[to] = to;
+      }
+    }
+  for (size_t i = 0; i < n_corners; i++)
+  {
+    join(b->parent, (size_t)b->sides[i].low, (size_t)b->sides[i].high);
+    join(b->parent, (size_t)image[b->sides[i].low], (size_t)image[b->sides[i].high]);
+  }
+  v->boundary_loops = count_loops(2 * n, b);
+  v->components = 0;
+  for (size_t i = 0; i < n; i++)
+    v->components += (size_t)(b->parent[i] == i) + (image[i] != (int64_t)i && b->parent[n + i] == n + i);
+}
+
+verdict judge_mirrored(size_t n_points, const double* points, size_t n_faces, const int64_t* offsets,
+  const int64_t* connectivity, const judge_plane* plane)
+{
+  verdict v = judge_mesh(n_points, points, n_faces, offsets, connectivity);
+  if (v.fault)
+    return v;
+  size_t n_corners = (size_t)offsets[n_faces], n_edges = 0, n_boundary = 0;
+  double near = rounding_of(n_points, points, plane);
+  bool* on = malloc(n_points * sizeof *on);
+  bench b;
+  if (new_bench(&b, 2 * n_points, n_faces, n_corners) && on)
+  {
+    for (size_t i = 0; i < n_points; i++)
+    {
+      double d = judge_height(plane, points + 3 * i);
+      on[i] = fabs(d) <= near;
+      if (d < -near)
+        v.fault = "a point of the half lies on the wrong side of the plane";
+    }
+    check_faces(n_points, points, n_faces, offsets, connectivity, &b);
+    check_fans(n_points, connectivity, n_corners, &b, &n_edges, &n_boundary);
+    for (size_t i = 0; i < 2 * n_points; i++)
+      b.outgoing[i] = -1;
+    separate(b.parent, 2 * n_points);
+    join_images(n_points, n_corners, connectivity, on, &v, &b);
+  }
+  else
+    v.fault = "the judge has no memory";
+  free(on);
+  free_bench(&b);
   return v;
 }
 

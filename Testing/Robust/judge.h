@@ -23,6 +23,19 @@ extern "C"
   verdict judge_mesh(
     size_t n_points, const double* points, size_t n_faces, const int64_t* offsets, const int64_t* connectivity);
 
+  /* A plane in the coordinates of what it is used on; the normal is of unit length. */
+  typedef struct judge_plane
+  {
+    double origin[3], normal[3];
+  } judge_plane;
+
+  double judge_height(const judge_plane* plane, const double* point);
+
+  /* A mesh and its mirror image about the plane as one surface: joined where an edge of the mesh's border lies on the
+   * plane. The mesh lies on the positive side. */
+  verdict judge_mirrored(size_t n_points, const double* points, size_t n_faces, const int64_t* offsets,
+    const int64_t* connectivity, const judge_plane* plane);
+
   /* What is wrong with `mesh` as a remesh of `surface`; NULL when nothing is. */
   const char* judge_pair(const verdict* surface, const verdict* mesh);
 
