@@ -2,6 +2,8 @@
 /* Paper 5: intersections per face. */
 #include "crossings.h"
 
+#include <string.h>
+
 typedef struct finder
 {
   aqr_context* c;
@@ -166,12 +168,21 @@ static void order_along_chords(void* data, size_t begin, size_t end)
   const aqr_crossing_order* o = b->order;
   for (size_t a = begin; a < end; a++)
     for (size_t i = o->first[a]; i < o->first[a + 1]; i++)
-      for (size_t j = i; j > o->first[a] && comes_before(b, (aqr_index)a, o->on[j], o->on[j - 1]); j--)
+    {
+      /* halving finds the place: what compares costs far more than what moves */
+      aqr_index x = o->on[i];
+      size_t low = o->first[a], high = i;
+      while (low < high)
       {
-        aqr_index swap = o->on[j];
-        o->on[j] = o->on[j - 1];
-        o->on[j - 1] = swap;
+        size_t middle = (low + high) / 2;
+        if (comes_before(b, (aqr_index)a, x, o->on[middle]))
+          high = middle;
+        else
+          low = middle + 1;
       }
+      memmove(o->on + low + 1, o->on + low, (i - low) * sizeof x);
+      o->on[low] = x;
+    }
 }
 
 aqr_status aqr_crossings_find(

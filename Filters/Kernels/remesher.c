@@ -452,18 +452,44 @@ static void forget_outcome(aqr_context* c, outcome* kept)
   kept->error = INFINITY;
 }
 
-/* Exchanges the outcome kept and the remesher's. */
+/* Exchanges the outcome kept and the remesher's, which is the newer. */
 static void exchange(aqr_remesher* r, outcome* kept, double error)
 {
   outcome now = { r->lines, r->polygons, r->report, error };
   r->lines = kept->lines;
   r->polygons = kept->polygons;
   r->report = kept->report;
+  r->report.proximity_queries = now.report.proximity_queries; /* of all attempts so far */
+  r->report.faces_crossed = now.report.faces_crossed;
   *kept = now;
 }
 
+/* What one attempt at a target asked of the sizing and what came of it. */
+typedef struct trial
+{
+  double ask;
+  aqr_reached reached;
+} trial;
+
+/* The points to ask of the sizing after `n` trials so that lines for `points` come of it: what was expected of the last
+ * one's lines, corrected by what came of them, and below all that was found too many, since the spacing only shrinks.
+ */
+static double ask_again(const trial* trials, int n, double points)
+{
+  const trial* last = &trials[n - 1];
+  double excess = points / fmax(1, last->reached.points), ask = last->ask;
+  if (log(excess) > target_accuracy) /* too much to be made up for by shrinking */
+    ask *= excess;
+  else /* begins below the points wanted, however little it then shrinks */
+    ask *= fmin(1, 0.9 * excess * last->reached.finer * last->reached.finer);
+  for (int i = 0; i < n; i++)
+    if (trials[i].reached.points > points)
+      ask = fmin(ask, 0.9 * trials[i].ask * trials[i].reached.finer * trials[i].reached.finer);
+  return ask;
+}
+
 /* Searches the tolerance that gives the target. The spacing first taken is one whose lines are seldom too many, and
- * shrinks as lines come; what was expected of the lines is corrected by what came of them. The best attempt is kept. */
+ * shrinks as lines come. The best attempt is kept. */
 static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
 {
   aqr_context* c = &r->context;
@@ -472,6 +498,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
   const double per = (o->pure_quads ? quads_per_face : 1) * (o->symmetry ? 2 : 1),
                goal = (double)o->target_points / per;
   double ask = goal / largest_excess, points = goal, before[3] = { 0, 0, 0 };
+  trial trials[most_attempts];
   outcome best = { .report = r->report, .error = INFINITY };
   for (int i = 0; i < most_attempts; i++)
   {
@@ -494,12 +521,10 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
     }
     if (error < (i < fine_attempts ? target_accuracy : missed_accuracy))
       break;
-    points = fmax(1, goal - (made - reached.points));
-    double excess = points / fmax(1, reached.points);
-    if (log(excess) > target_accuracy) /* too much to be made up for by shrinking */
-      ask *= excess;
-    else /* begins below the points wanted, however little it then shrinks */
-      ask *= fmin(1, 0.9 * excess * reached.finer * reached.finer);
+    /* cuts for the topology add points whatever the lines; vertices that merge are a share of them */
+    points = made > reached.points ? fmax(1, goal - (made - reached.points)) : goal * reached.points / made;
+    trials[i] = (trial){ ask, reached };
+    ask = ask_again(trials, i + 1, points);
   }
   best.report.target_missed = best.error > missed_accuracy;
   exchange(r, &best, 0);

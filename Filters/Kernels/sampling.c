@@ -19,7 +19,9 @@ enum
   most_on_edge = 8,   /* spacings along an edge of a chain, however small the tolerance */
   most_failures = 50, /* growths that come to nothing, per line kept ... */
   free_failures = 64, /* ... and these many lines more: the bound of the work along threads without area */
-  most_in_vain = 8    /* faces crossed by growths that came to nothing, per face crossed by the lines kept and per
+  most_excess = 8,    /* of points over those asked for, beyond one per face of the surface: the attempt is lost, and
+                         what it may cost is bounded */
+  most_in_vain = 2    /* faces crossed by growths that came to nothing, per face crossed by the lines kept and per
                          face of the surface: among spikes a growth can cross thousands */
 };
 
@@ -690,6 +692,8 @@ aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_fiel
   for (size_t i = 0; i < chains->n_chains; i++)
     AQR_TRY(add_chain(&m, chains, &chains->chains[i]));
   count_points(&m);
+  if (options->points > 0)
+    m.goal = m.points + most_excess * options->points + (double)s->n_faces;
   AQR_TRY(fill_gaps(&m, 0));
   AQR_TRY(cover_surface(&m));
   AQR_TRY(fill_gaps(&m, 0));
