@@ -4,6 +4,7 @@
 
 #include "vtkDataArray.h"
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -108,13 +109,97 @@ int TestParameters(int, char*[])
     }
   }
 
-  { // NaN passes every clamp, and must end in a message.
+  { // Whatever a number is set to: clamped into its range and used, but for NaN, which passes every clamp and must end
+    // in
+    // a message that names it.
+    struct Number
+    {
+      const char* Name;
+      void (Filter::*Set)(double);
+      double (Filter::*Get)();
+      double Low, High;
+    };
+    const Number numbers[] = { { "tolerance", &Filter::SetTolerance, &Filter::GetTolerance, 1e-7, 0.1 },
+      { "curvature_radius", &Filter::SetCurvatureRadius, &Filter::GetCurvatureRadius, 0.0, 0.2 },
+      { "confidence_angle", &Filter::SetConfidenceAngle, &Filter::GetConfidenceAngle, 0.0, 90.0 },
+      { "feature_angle", &Filter::SetFeatureAngle, &Filter::GetFeatureAngle, 0.1, 180.0 },
+      { "largest_spacing", &Filter::SetLargestSpacing, &Filter::GetLargestSpacing, 1e-4, 1.0 },
+      { "anisotropy", &Filter::SetAnisotropy, &Filter::GetAnisotropy, 0.0, 1.0 },
+      { "adaptivity", &Filter::SetAdaptivity, &Filter::GetAdaptivity, 0.0, 1.0 } };
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const auto torus = MakeTorus(12, 6);
+    for (const Number& number : numbers)
+    {
+      vtkNew<Filter> filter;
+      Messages messages(filter);
+      filter->SetInputData(torus);
+      filter->SetTolerance(0.02);
+      for (const double value : { -infinite, -1e300, -1.0, -0.0, 0.0, 1e-300, 1e300, infinite })
+      {
+        (filter->*number.Set)(value);
+        CHECK((filter->*number.Get)() == std::min(number.High, std::max(number.Low, value)));
+        filter->Update();
+        checks.Check(messages.Errors == 0 && filter->GetOutput()->GetNumberOfPolys() > 0, number.Name, __LINE__);
+      }
+      (filter->*number.Set)(std::numeric_limits<double>::quiet_NaN());
+      filter->Update();
+      CHECK(messages.Errors == 1 && messages.Says(number.Name) && filter->GetOutput()->GetNumberOfPoints() == 0);
+    }
+    struct Whole
+    {
+      const char* Name;
+      void (Filter::*Set)(int);
+      int (Filter::*Get)();
+      int Low, High;
+    };
+    const Whole wholes[] = { { "SmoothingIterations", &Filter::SetSmoothingIterations, &Filter::GetSmoothingIterations,
+                               0, 1000 },
+      { "LargestValence", &Filter::SetLargestValence, &Filter::GetLargestValence, 4, 64 },
+      { "Seed", &Filter::SetSeed, &Filter::GetSeed, 0, 2147483647 },
+      { "NumberOfThreads", &Filter::SetNumberOfThreads, &Filter::GetNumberOfThreads, 0, 1024 },
+      { "DensityMode", &Filter::SetDensityMode, &Filter::GetDensityMode, 0, 1 } };
+    for (const Whole& whole : wholes)
+    {
+      vtkNew<Filter> filter;
+      Messages messages(filter);
+      filter->SetInputData(torus);
+      for (const int value : { std::numeric_limits<int>::min(), -1, 0, std::numeric_limits<int>::max() })
+      {
+        (filter->*whole.Set)(value);
+        CHECK((filter->*whole.Get)() == std::min(whole.High, std::max(whole.Low, value)));
+        filter->Update();
+        checks.Check(messages.Errors == 0 && filter->GetOutput()->GetNumberOfPolys() > 0, whole.Name, __LINE__);
+      }
+    }
     vtkNew<Filter> filter;
     Messages messages(filter);
-    filter->SetInputData(MakeTorus(40, 20));
-    filter->SetTolerance(std::numeric_limits<double>::quiet_NaN());
-    filter->Update();
-    CHECK(messages.Errors == 1 && filter->GetOutput()->GetNumberOfPoints() == 0);
+    filter->SetInputData(torus);
+    filter->SetDensityModeToNumberOfPoints();
+    for (const vtkIdType value : { VTK_ID_MIN, vtkIdType(-1), vtkIdType(0), VTK_ID_MAX })
+    {
+      filter->SetTargetNumberOfPoints(value);
+      CHECK(filter->GetTargetNumberOfPoints() == (value > 0 ? 2147483647 : 4));
+      filter->Update();
+      CHECK(messages.Errors == 0 && filter->GetOutput()->GetNumberOfPolys() > 0);
+    }
+    filter->SetTargetNumberOfPoints(100);
+    filter->SymmetryOn();
+    for (const double value : { std::numeric_limits<double>::quiet_NaN(), infinite, -infinite, 1e300 })
+    {
+      for (int k = 0; k < 6; ++k)
+      {
+        double plane[6] = { 1.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+        plane[k] = value;
+        filter->SetSymmetryNormal(plane);
+        filter->SetSymmetryOrigin(plane + 3);
+        messages.Clear();
+        filter->Update();
+        // only a normal that long is as good as any
+        const bool good = k < 3 && value == 1e300;
+        CHECK(messages.Errors == (good ? 0 : 1) && messages.Says("symmetry_") != good);
+        CHECK((filter->GetOutput()->GetNumberOfPoints() > 0) == good);
+      }
+    }
   }
 
   { // Density

@@ -177,6 +177,13 @@ AQR_TEST(planes_of_any_length_of_normal_serve_and_those_out_of_sight_are_refused
     CHECK(aqr_remesher_run(r, &o) == AQR_BAD_OPTION && strstr(aqr_remesher_message(r), "diagonals"));
     CHECK(!aqr_remesher_mesh(r));
   }
+  const double no_number[] = { NAN, INFINITY, -INFINITY };
+  for (size_t i = 0; i < 18; i++)
+  {
+    set_plane(&o, v3(0.1, 0, 0), v3(1, 0, 0));
+    *(i < 9 ? &o.symmetry_origin[i % 3] : &o.symmetry_normal[i % 3]) = no_number[i / 3 % 3];
+    CHECK(aqr_remesher_run(r, &o) == AQR_BAD_OPTION && strstr(aqr_remesher_message(r), "finite"));
+  }
   set_plane(&o, v3(-1e3, 0, 0), v3(1, 0, 0)); /* far, but in sight */
   CHECK(aqr_remesher_run(r, &o) == AQR_OK && !survey_mesh(aqr_remesher_mesh(r)).flaw);
   aqr_remesher_free(r);

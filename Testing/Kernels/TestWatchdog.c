@@ -87,7 +87,7 @@ static double clean_work(size_t triangles, const aqr_options* o)
       m = kind == 0   ? shape_torus(n, 1)
           : kind == 1 ? shape_ellipsoid(n, 0.2, 1, v3(1, 0.6, 0.4))
           : kind == 2 ? shape_cylinder(n, 1)
-                      : shape_grid(2 * n, 2 * n, false, false, 0.2, 1, place_on_saddle);
+                      : shape_grid(2 * n, 2 * n, false, false, 0.2, 1, mutate_on_saddle);
     }
     aqr_input input = shape_input(&m);
     most = fmax(most, work_on(&input, o));
@@ -152,7 +152,7 @@ static void fill_factors(double* factor, size_t n, int kind)
 /* The spacing went down to a ten-thousandth of the diagonal: a hundred million points from a small surface. */
 AQR_TEST(no_density_asks_for_more_than_the_input_can_carry)
 {
-  shape m = shape_grid(24, 3, false, false, 0.2, 1, place_on_saddle);
+  shape m = shape_grid(24, 3, false, false, 0.2, 1, mutate_on_saddle);
   for (size_t i = 0; i < m.n_points; i++)
     m.points[3 * i + 1] *= 0.1;
   aqr_input input = shape_input(&m);

@@ -203,6 +203,106 @@ class Program(unittest.TestCase):
                 f.write(data[: int(share * len(data))])
             self.expect_failure(1, [file, "too early"], file, out)
 
+    def files_of_every_kind(self):
+        """A small torus in every format, those of text that the program does not write too: bytes by name."""
+        torus, files = self.path("small.ply"), {}
+        write_torus(torus, 24, 12)
+        with open(torus, "rb") as f:
+            files["text.ply"] = f.read()
+        for extension in ("ply", "obj", "stl", "vtk", "vtp"):
+            run = self.run_program(torus, self.path("whole." + extension), "--tolerance", "0.01")
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
+            with open(self.path("whole." + extension), "rb") as f:
+                files["whole." + extension] = f.read()
+        rows = files["text.ply"].decode().split("\n")[9:]
+        points, faces = rows[:288], [row.split()[1:] for row in rows[288:] if row]
+        files["text.vtk"] = "\n".join(
+            ["# vtk DataFile Version 3.0", "torus", "ASCII", "DATASET POLYDATA", "POINTS 288 double"] + points
+            + ["POLYGONS %d %d" % (len(faces), 4 * len(faces))] + ["3 " + " ".join(face) for face in faces]
+        ).encode() + b"\n"
+        facet = "facet normal 0 0 0\nouter loop\n%s\nendloop\nendfacet"
+        files["text.stl"] = "\n".join(
+            ["solid torus"] + [facet % "\n".join("vertex " + points[int(i)] for i in face) for face in faces]
+            + ["endsolid torus"]
+        ).encode() + b"\n"
+        for name, data in files.items():
+            with open(self.path(name), "wb") as f:
+                f.write(data)
+            self.assertEqual(self.run_program(self.path(name), self.path("out.obj")).returncode, 0, name)
+        return files
+
+    def expect_refusal(self, name, data):
+        with open(self.path(name), "wb") as f:
+            f.write(data)
+        self.expect_failure(1, [self.path(name)], self.path(name), self.path("out.vtp"))
+
+    def test_files_that_end_too_early_are_named(self):
+        self.write("out.vtp", "keep me")
+        for name, data in self.files_of_every_kind().items():
+            for share in (0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99):
+                with self.subTest(name=name, share=share):
+                    self.expect_refusal("short." + name, data[: int(share * len(data))])
+
+    def test_files_that_lie_about_what_they_hold_are_named(self):
+        self.write("out.vtp", "keep me")
+        files = self.files_of_every_kind()
+        counts = {
+            ".ply": (rb"element vertex (\d+)", rb"element face (\d+)"),
+            ".vtk": (rb"POINTS (\d+)", rb"POLYGONS (\d+)", rb"POLYGONS \d+ (\d+)"),
+            ".vtp": (rb'NumberOfPoints="(\d+)"', rb'NumberOfPolys="(\d+)"'),
+        }
+        for name, data in files.items():
+            for pattern in counts.get(name[-4:], ()):
+                found = re.search(pattern, data)
+                n = int(found.group(1))
+                lies = [0, 1, n - 1, n + 1, 2 * n, 10**6, 10**18, -5]
+                if b"Polys" in pattern:  # the reader takes the first of them
+                    lies = [0, n + 1, 2 * n, 10**6, 10**18, -5]
+                for lie in lies:
+                    with self.subTest(name=name, pattern=pattern, lie=lie):
+                        self.expect_refusal("lie." + name, data[: found.start(1)] + b"%d" % lie + data[found.end(1) :])
+        data = files["whole.stl"]
+        n = int.from_bytes(data[80:84], "little")
+        for lie in (0, 1, n - 1, n + 1, 2 * n, 2**32 - 1):
+            with self.subTest(name="whole.stl", lie=lie):
+                self.expect_refusal("lie.stl", data[:80] + lie.to_bytes(4, "little") + data[84:])
+
+    def test_no_value_of_any_option_is_without_a_defined_outcome(self):
+        write_torus(self.path("small.ply"), 12, 6)
+        ranges = {
+            "--points": (4, 2**31 - 1), "--tolerance": (1e-7, 0.1), "--largest-spacing": (1e-4, 1),
+            "--anisotropy": (0, 1), "--adaptivity": (0, 1), "--curvature-radius": (0, 0.2), "--smoothing": (0, 1000),
+            "--confidence-angle": (0, 90), "--feature-angle": (0.1, 180), "--largest-valence": (4, 64),
+            "--seed": (0, 2**31 - 1), "--threads": (0, 1024),
+        }
+        run = self.run_program("--help")
+        for option in re.findall(r"\n  (--\S+) [NFTA] ", run.stdout):
+            self.assertIn(option, ranges)
+        for option, (low, high) in ranges.items():
+            for value in ("nan", "inf", "-inf", "-1", "0", "1e300", "1e-300", "text", "", "1,5", "%g" % low):
+                with self.subTest(option=option, value=value):
+                    try:
+                        good = low <= float(value) <= high
+                    except ValueError:
+                        good = False
+                    whole = option in ("--points", "--smoothing", "--largest-valence", "--seed", "--threads")
+                    if not good or (whole and float(value) != int(float(value))):
+                        self.expect_failure(2, [option], self.path("small.ply"), self.path("out.obj"), option, value)
+                        continue
+                    run = self.run_program(self.path("small.ply"), self.path("out.obj"), option, value)
+                    self.assertEqual(run.returncode, 0, run.stderr)
+                    os.remove(self.path("out.obj"))
+        for place in range(6):
+            for value in ("nan", "inf", "-inf", "text", ""):
+                plane = ["1", "0", "0", "0", "0", "0"]
+                plane[place] = value
+                with self.subTest(plane=plane):
+                    self.expect_failure(
+                        2, ["--symmetry"], self.path("small.ply"), self.path("out.obj"), "--symmetry", ",".join(plane))
+        for plane in ("1,0,0,1e300,0,0", "1,0,0,-1e300,0,0", "1,0,0,100,0,0"):
+            self.expect_failure(1, ["plane" if "100" in plane else "symmetry_origin"], self.path("small.ply"),
+                                self.path("out.obj"), "--symmetry", plane)
+
     def test_unusable_surfaces_are_named(self):
         out = self.write("out.vtp", "keep me")
         square = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]

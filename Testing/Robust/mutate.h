@@ -7,11 +7,11 @@
 
 #include "../Kernels/shapes.h"
 
-static inline vec3 place_on_square(double u, double v)
+static inline vec3 mutate_on_square(double u, double v)
 {
   return v3(u, v, 0);
 }
-static inline vec3 place_on_saddle(double u, double v)
+static inline vec3 mutate_on_saddle(double u, double v)
 {
   double x = 2 * u - 1, y = 2 * v - 1;
   return v3(x, y, x * x * x - 3 * x * y * y);
@@ -32,9 +32,9 @@ static inline shape mutate_surface(unsigned which, unsigned seed)
     case 4:
       return shape_catenoid(2, seed);
     case 5:
-      return shape_grid(2 + seed % 8, 6, false, false, 0, seed, place_on_square);
+      return shape_grid(2 + seed % 8, 6, false, false, 0, seed, mutate_on_square);
     case 6:
-      return shape_grid(8, 8, false, false, 0, seed, place_on_saddle);
+      return shape_grid(8, 8, false, false, 0, seed, mutate_on_saddle);
     default:
       return shape_grid(3, 1 + seed % 3, true, false, 0, seed, place_on_cylinder);
   }

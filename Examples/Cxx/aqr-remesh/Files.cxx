@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Files.h"
 
+#include "Announced.h"
+
 #include "vtkCellArray.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
@@ -34,13 +36,6 @@ namespace fs = std::filesystem;
 namespace
 {
 //------------------------------------------------------------------------------
-// vtkPLYReader only warns that a file ends early, goes on, and then reads through wild pointers.
-struct CutShort : std::runtime_error
-{
-  using std::runtime_error::runtime_error;
-};
-
-//------------------------------------------------------------------------------
 class Recorder : public vtkOutputWindow
 {
 public:
@@ -55,11 +50,19 @@ public:
       this->Failed = true;
       return;
     }
-    if (message.find("PLY error reading file") != std::string::npos)
-    {
-      throw CutShort("the file ends too early");
-    }
     const bool isError = this->GetCurrentMessageType() == vtkOutputWindow::MESSAGE_TYPE_ERROR;
+    // Some readers only warn of it, go on, and read through wild pointers or leave memory as it happened to be.
+    if (message.find("PLY error reading file") != std::string::npos ||
+        (!isError && message.find("Error reading") != std::string::npos))
+    {
+      this->FirstError = "the file ends too early"; // a reader that catches what is thrown says only that it failed
+      throw CutShort(this->FirstError);
+    }
+    if (message.find("Unable to allocate") != std::string::npos) // some builds of VTK end the process next
+    {
+      this->FirstError = "there is no memory for what it announces";
+      throw CutShort(this->FirstError);
+    }
     std::string& kept = isError ? this->FirstError : this->FirstWarning;
     if (kept.empty())
     {
@@ -80,6 +83,8 @@ std::string Sentence(const std::string& message)
   std::string text = begin == std::string::npos ? message : message.substr(begin + 3);
   std::replace_if(
     text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+  std::replace_if( // what a reader quotes from a binary file
+    text.begin(), text.end(), [](unsigned char c) { return c >= 0x80; }, '?');
   const size_t last = text.find_last_not_of(" .");
   return text.substr(0, last == std::string::npos ? 0 : last + 1);
 }
@@ -91,45 +96,6 @@ std::string Extension(const std::string& file)
   std::transform(extension.begin(), extension.end(), extension.begin(),
     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-//------------------------------------------------------------------------------
-// Throws CutShort where an ASCII .ply has fewer lines than its header announces: vtkPLYReader ends the
-// whole process there. Files in binary end in a warning, see Recorder.
-void CheckPly(const std::string& file)
-{
-  std::ifstream stream(file, std::ios::binary);
-  std::string line;
-  std::string word;
-  bool ascii = false;
-  long long announced = 0;
-  while (std::getline(stream, line) && line.compare(0, 10, "end_header") != 0)
-  {
-    std::istringstream words(line);
-    long long count = 0;
-    words >> word;
-    if (word == "format")
-    {
-      words >> word;
-      ascii = word == "ascii";
-    }
-    else if (word == "element" && words >> word >> count)
-    {
-      announced += count;
-    }
-  }
-  if (!stream)
-  {
-    throw CutShort("it has no .ply header");
-  }
-  while (ascii && announced > 0 && std::getline(stream, line))
-  {
-    announced -= line.find_first_not_of(" \t\r") != std::string::npos;
-  }
-  if (ascii && announced > 0)
-  {
-    throw CutShort("the file ends too early");
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -156,14 +122,18 @@ vtkSmartPointer<vtkPolyData> ReadByExtension(const std::string& extension, const
   }
   if (extension == ".stl")
   {
+    CheckStl(file);
     return Read<vtkSTLReader>(file);
   }
   if (extension == ".vtk")
   {
-    return Read<vtkPolyDataReader>(file);
+    auto surface = Read<vtkPolyDataReader>(file);
+    CheckVtk(file, surface->GetNumberOfPolys());
+    return surface;
   }
   if (extension == ".vtp")
   {
+    CheckVtp(file);
     return Read<vtkXMLPolyDataReader>(file);
   }
   return nullptr;
