@@ -492,6 +492,21 @@ class Program(unittest.TestCase):
         self.assertEqual(run.stdout.count("\n"), 1)
         self.assertEqual([counts[k] for k in ("feature_rms", "feature_max", "boundary_rms", "boundary_max")], [0] * 4)
 
+    def test_no_file_is_written_but_those_asked_for(self):
+        for name in ("work", "home", "temporary", "out"):
+            os.mkdir(self.path(name))
+        asked = {name: self.path("out/" + name) for name in ("a.obj", "b.vtp", "c.vtp", "d.vtp", "e.json")}
+        environment = dict(os.environ, HOME=self.path("home"), TMPDIR=self.path("temporary"),
+                           XDG_CACHE_HOME=self.path("home"), XDG_CONFIG_HOME=self.path("home"))
+        run = subprocess.run(
+            [os.path.abspath(PROGRAM), self.torus, asked["a.obj"], "--lines", asked["b.vtp"], "--directions", asked["c.vtp"],
+             "--confidence", asked["d.vtp"], "--report", asked["e.json"]],
+            capture_output=True, text=True, timeout=120, env=environment, cwd=self.path("work"))
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        self.assertEqual(sorted(os.listdir(self.path("out"))), sorted(asked))
+        for name in ("work", "home", "temporary"):
+            self.assertEqual(os.listdir(self.path(name)), [], name)
+
     def test_no_network_is_used(self):
         run = self.run_program(self.torus, self.path("out.vtp"), LD_PRELOAD=NO_NETWORK)
         self.assertEqual((run.returncode, run.stderr), (0, ""))

@@ -280,6 +280,7 @@ int main(int argc, char* argv[])
   for (const std::string& file : files)
   {
     std::string line;
+    double longest = 0;
     for (const Set& set : Sets)
     {
       std::string said;
@@ -287,6 +288,7 @@ int main(int argc, char* argv[])
       const Outcome outcome = RunApart(file, set, seconds, megabytes, said);
       const double took = ChildSeconds() - before;
       total[outcome]++;
+      longest = std::max(longest, took);
       if (took > slowest)
       {
         slowest = took;
@@ -296,7 +298,8 @@ int main(int argc, char* argv[])
       line +=
         std::string(line.empty() ? "" : "; ") + set.Name + ": " + Names[outcome] + (said.empty() ? "" : ": ") + said;
     }
-    std::cout << std::filesystem::path(file).filename().string() << ": " << line << std::endl;
+    std::cout << std::filesystem::path(file).filename().string() << ": " << line << "; " << longest << " s at most"
+              << std::endl;
   }
   std::cout << files.size() << " files, " << Sets.size() << " runs each:";
   for (size_t i = 0; i < OUTCOMES; ++i)
