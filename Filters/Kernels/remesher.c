@@ -303,16 +303,16 @@ static aqr_status add_bare_components(aqr_remesher* r, const uint8_t* is_bare)
     if (!is_bare[f] || seen[f])
       continue;
     size_t n = 0;
-    double area = 0, size = r->sizing.largest;
+    double points = 0; /* as lines would have: the smallest spacing would make one needle speak for all */
     seen[f] = 1;
     faces[n++] = f;
     for (size_t i = 0; i < n; i++)
     {
-      area += v3_norm(aqr_face_cross(s, faces[i])) / 2;
+      double third = v3_norm(aqr_face_cross(s, faces[i])) / 6;
       for (unsigned k = 0; k < 3; k++)
       {
         const float* d = r->sizing.spacing + 2 * (size_t)s->corner[3 * faces[i] + k];
-        size = fmin(size, fmin((double)d[0], (double)d[1]));
+        points += third / ((double)d[0] * (double)d[1]);
         aqr_index t = aqr_twin(s, 3 * faces[i] + k);
         if (t != AQR_NONE && !seen[aqr_face_of(t)])
         {
@@ -321,8 +321,8 @@ static aqr_status add_bare_components(aqr_remesher* r, const uint8_t* is_bare)
         }
       }
     }
-    size_t points = (size_t)fmin((double)n, fmax(8, area / (size * size)));
-    AQR_TRY(aqr_coarsen_component(c, s, &r->field, faces, n, points, &r->polygons));
+    points = fmin((double)n, fmax(8, points));
+    AQR_TRY(aqr_coarsen_component(c, s, &r->field, faces, n, (size_t)points, &r->polygons));
     r->report.coarsened_components++;
   }
 done:

@@ -122,4 +122,43 @@ AQR_TEST(lines_that_end_at_one_place_of_a_crease_keep_their_order)
   CHECK(!fault_of(&input, &o));
 }
 
+/* A component without lines was decimated as the smallest of its spacings asked for: one sharp bend or a user's
+ * density at one point, and it kept all of its faces. */
+AQR_TEST(one_point_does_not_speak_for_a_component_without_lines)
+{
+  size_t points[2];
+  for (int dense = 0; dense < 2; dense++)
+  {
+    shape m = shape_ellipsoid(16, 0.1, 1, v3(0.05, 0.05, 0.05));
+    const double far[9] = { 3, 0, 0, 3, 1, 0, 3, 0, 1 };
+    m.points = realloc(m.points, (3 * m.n_points + 9) * sizeof *m.points);
+    m.triangles = realloc(m.triangles, (3 * m.n_triangles + 3) * sizeof *m.triangles);
+    memcpy(m.points + 3 * m.n_points, far, sizeof far);
+    for (size_t k = 0; k < 3; k++)
+      m.triangles[3 * m.n_triangles + k] = (int64_t)(m.n_points + k);
+    m.n_points += 3;
+    m.n_triangles++;
+    aqr_input input = shape_input(&m);
+    aqr_options o = aqr_default_options();
+    o.tolerance = 0.1;
+    o.feature_lines = 0;
+    o.largest_spacing = 1;
+    double* scale = malloc(m.n_points * sizeof *scale);
+    for (size_t i = 0; i < m.n_points; i++)
+      scale[i] = dense && i == 700 ? 1e6 : 1;
+    o.density_scale = scale;
+    CHECK(!fault_of(&input, &o));
+    aqr_remesher* r = NULL;
+    CHECK(aqr_remesher_new(NULL, &r) == AQR_OK && aqr_remesher_set_input(r, &input) == AQR_OK);
+    CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+    points[dense] = aqr_remesher_mesh(r)->number_of_points;
+    printf("%zu points of %zu\n", points[dense], m.n_points);
+    CHECK(aqr_remesher_report(r)->coarsened_components > 0);
+    aqr_remesher_free(r);
+    free(scale);
+    shape_free(&m);
+  }
+  CHECK(points[1] < 2 * points[0]);
+}
+
 AQR_TEST_MAIN
