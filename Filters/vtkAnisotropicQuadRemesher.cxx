@@ -456,6 +456,8 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
   options.convex_partition = this->ConvexPartition;
   options.preserve_topology = this->PreserveTopology;
   options.seed = static_cast<uint32_t>(this->Seed);
+  options.show_field = this->GenerateDirections || this->GenerateConfidence || this->GenerateLines;
+  options.show_lines = this->GenerateLines;
 
   vtkInternals& internals = *this->Internals;
   aqr_status status = AQR_OK;

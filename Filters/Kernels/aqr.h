@@ -149,6 +149,8 @@ extern "C"
     int preserve_topology;     /**< 0 or 1, 1: regions that are not disks are cut; 0: small handles may
                                   vanish */
     uint32_t seed;             /**< 0: breaks ties between seeds of equal rank */
+    int show_field;            /**< 0 or 1, 1: aqr_remesher_field() has something to show, which takes memory */
+    int show_lines;            /**< 0 or 1, 1: aqr_remesher_lines() likewise */
   } aqr_options;
 
   /** Every option at its default, with the cookie that aqr_remesher_run() asks for. */
@@ -296,9 +298,9 @@ extern "C"
 
   /** The mesh of the last run, if that returned AQR_OK; NULL otherwise. */
   AQR_API const aqr_mesh* aqr_remesher_mesh(const aqr_remesher* remesher);
-  /** The directions of that run, likewise. */
+  /** The directions of that run, likewise; NULL where show_field was 0. */
   AQR_API const aqr_field_view* aqr_remesher_field(const aqr_remesher* remesher);
-  /** The lines of that run, likewise. */
+  /** The lines of that run, likewise; NULL where show_lines was 0. */
   AQR_API const aqr_lines_view* aqr_remesher_lines(const aqr_remesher* remesher);
 
   /** Counts of the last call; never NULL, partly filled after a failure. */

@@ -71,7 +71,7 @@ bool aqr_reserve(aqr_context* c, void** p, size_t* capacity, size_t need, size_t
 {
   if (need <= *capacity && *p)
     return true;
-  size_t wanted = *capacity < 8 ? 16 : 2 * *capacity;
+  size_t wanted = *capacity + *capacity / 2 + 16;
   if (wanted < need)
     wanted = need;
   if (wanted > SIZE_MAX / 2 / size)

@@ -29,7 +29,7 @@ void aqr_release(aqr_context* c, void* p, size_t count, size_t size);
 /* Releases and forgets; safe on NULL. */
 #define AQR_DROP(c, p, count) (aqr_release(c, p, count, sizeof *(p)), (p) = NULL)
 
-/* Grows *p to at least `need` elements of `size` bytes, doubling; false when out of memory (*p
+/* Grows *p to at least `need` elements of `size` bytes, by half as many again; false when out of memory (*p
  * stays valid). */
 bool aqr_reserve(aqr_context* c, void** p, size_t* capacity, size_t need, size_t size);
 #define AQR_RESERVE(c, p, capacity, need)                                                                              \

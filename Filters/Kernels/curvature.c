@@ -63,7 +63,7 @@ typedef struct job
   double* weight;   /* per point: of the balls blended into t */
   size_t inside_bytes;
   slot slot[slots];
-  double* t;
+  float* t;
   double* normal;
 } job;
 
@@ -137,7 +137,7 @@ static void lump_points(void* data, size_t begin, size_t end)
     }
     j->length[v] = n ? length / (double)n : 0;
     j->lumps[v] = p;
-    v3_store(j->normal + 3 * (size_t)v, v3_unit(v3_norm2(normal) > 0 ? normal : any));
+    v3_store(j->normal + 3 * (size_t)v, v3_unit_or(v3_norm2(normal) > 0 ? normal : any, v3(0, 0, 1)));
   }
 }
 
@@ -327,12 +327,12 @@ static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
   return fits;
 }
 
-static void store_mean(double* t, const ball* b)
+static void store_mean(float* t, const ball* b)
 {
   bool finite = b->area > 0;
   for (int c = 0; c < 6; c++)
   {
-    t[c] = finite ? b->sum[c] / b->area : 0;
+    t[c] = finite ? (float)(b->sum[c] / b->area) : 0;
     finite = finite && isfinite(t[c]);
   }
   if (!finite)
@@ -434,7 +434,7 @@ static void blend(job* j, const slot* k)
       double x = 1 - v3_norm2(v3_sub(aqr_point(j->s, w), aqr_point(j->s, v))) / (limit * limit);
       j->weight[w] += x * x;
       for (size_t a = 0; a < 6; a++)
-        j->t[6 * (size_t)w + a] += x * x * j->t[6 * (size_t)v + a];
+        j->t[6 * (size_t)w + a] += (float)(x * x) * j->t[6 * (size_t)v + a];
     }
   }
 }
@@ -444,7 +444,7 @@ static void divide(void* data, size_t begin, size_t end)
   job* j = data;
   for (size_t v = begin; v < end; v++)
     for (size_t a = 0; a < 6 && j->covered[v] == blended; a++)
-      j->t[6 * v + a] /= j->weight[v];
+      j->t[6 * v + a] /= (float)j->weight[v];
 }
 
 /* Fills the balls and blends them in their order. They differ in size by orders of magnitude, so the length of a batch
@@ -566,7 +566,7 @@ aqr_status aqr_curvature_tensors(aqr_context* c, const aqr_surface* s, double ra
   aqr_status status = AQR_OK;
   size_t n = s->n_points;
   job j = { .s = s, .radius = radius };
-  tensors->t = j.t = AQR_NEW0(c, double, 6 * n);
+  tensors->t = j.t = AQR_NEW0(c, float, 6 * n);
   tensors->normal = j.normal = AQR_NEW(c, double, 3 * n);
   AQR_REQUIRE(tensors->t && tensors->normal && allocate_job(c, &j), AQR_OUT_OF_MEMORY);
 

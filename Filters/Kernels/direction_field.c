@@ -5,16 +5,16 @@
 #include "cross_field.h"
 #include "flatten.h"
 
-/* Curvature differences below this are rounding, no direction: the scaled surface would turn by less
+/* Curvature differences below this are rounding of the tensors, no direction: the scaled surface would turn by less
  * than this many radians from end to end. */
-static const double least_difference = 1e-7;
+static const double least_difference = 1e-6;
 
 typedef struct job
 {
   const aqr_surface* s;
   const aqr_neighbours* around;
-  const double* t;
-  double* smoothed;
+  const float* t;
+  float* smoothed;
   aqr_rotor* direction; /* per point: the minimum direction in the point's frame; 0 where there is none */
   aqr_rotor* corner;    /* per half-edge: turns the frame at its start into its face's plane; 0 without a plane */
   aqr_field* field;
@@ -39,15 +39,18 @@ typedef struct principal
   aqr_complex min_direction; /* in the frame; 0 where there is none */
 } principal;
 
-static double apply(const double* t, vec3 a, vec3 b)
+static double apply(const float* f, vec3 a, vec3 b)
 {
+  double t[6];
+  for (int i = 0; i < 6; i++)
+    t[i] = (double)f[i];
   return t[0] * a.x * b.x + t[1] * a.y * b.y + t[2] * a.z * b.z + t[3] * (a.x * b.y + a.y * b.x) +
          t[4] * (a.x * b.z + a.z * b.x) + t[5] * (a.y * b.z + a.z * b.y);
 }
 
 /* Of the tensor in the plane of the averaged normal. Its eigenvectors are swapped, as normal cycles
  * have them: the larger curvature comes along the minimum direction. */
-static principal principal_of(const double* t, frame at)
+static principal principal_of(const float* t, frame at)
 {
   double a = apply(t, at.x, at.x), b = apply(t, at.y, at.y), off = apply(t, at.x, at.y);
   double mean = (a + b) / 2, d = (a - b) / 2, half = sqrt(d * d + off * off);
@@ -139,11 +142,11 @@ static void smooth(void* data, size_t begin, size_t end)
       double c = (double)confidence[w];
       weight += c;
       for (int k = 0; k < 6; k++)
-        sum[k] += c * j->t[6 * (size_t)w + (size_t)k];
+        sum[k] += c * (double)j->t[6 * (size_t)w + (size_t)k];
     }
     double keep = weight > 0 ? (double)confidence[v] / 2 : 1, take = weight > 0 ? (1 - keep) / weight : 0;
     for (size_t k = 0; k < 6; k++)
-      j->smoothed[6 * v + k] = keep * j->t[6 * v + k] + take * sum[k];
+      j->smoothed[6 * v + k] = (float)(keep * (double)j->t[6 * v + k] + take * sum[k]);
   }
 }
 
@@ -170,21 +173,10 @@ static void store(void* data, size_t begin, size_t end)
   }
 }
 
-static void copy_normals(void* data, size_t begin, size_t end)
-{
-  const job* j = data;
-  for (size_t v = begin; v < end; v++)
-  {
-    vec3 n = v3_unit(v3_load(j->t + 3 * v));
-    v3_store(j->field->normal + 3 * v, v3_norm2(n) > 0.5 ? n : v3(0, 0, 1));
-  }
-}
-
 static bool allocate(aqr_context* c, const aqr_surface* s, aqr_field* field)
 {
   size_t n = s->n_points;
   *field = (aqr_field){ 0 };
-  field->normal = AQR_NEW(c, double, 3 * n);
   field->min_direction = AQR_NEW(c, double, 3 * n);
   field->k_min = AQR_NEW(c, double, n);
   field->k_max = AQR_NEW(c, double, n);
@@ -192,7 +184,7 @@ static bool allocate(aqr_context* c, const aqr_surface* s, aqr_field* field)
   field->flat = AQR_NEW(c, aqr_rotor, 3 * s->n_faces);
   field->point_confidence = AQR_NEW(c, float, n);
   field->face_confidence = AQR_NEW(c, float, s->n_faces);
-  return field->normal && field->min_direction && field->k_min && field->k_max && field->cross && field->flat &&
+  return field->min_direction && field->k_min && field->k_max && field->cross && field->flat &&
          field->point_confidence && field->face_confidence;
 }
 
@@ -200,13 +192,13 @@ static aqr_status smooth_tensors(aqr_context* c, job* j, const aqr_tensors* tens
 {
   aqr_status status = AQR_OK;
   size_t n = j->s->n_points, n_faces = j->s->n_faces;
-  double* buffer[2] = { NULL, NULL };
+  float* buffer[2] = { NULL, NULL };
   j->direction = AQR_NEW(c, aqr_rotor, n);
   j->corner = AQR_NEW(c, aqr_rotor, 3 * n_faces);
   AQR_REQUIRE(j->direction && j->corner, AQR_OUT_OF_MEMORY);
   for (int i = 0; i < 2 && i < iterations; i++)
   {
-    buffer[i] = AQR_NEW(c, double, 6 * n);
+    buffer[i] = AQR_NEW(c, float, 6 * n);
     AQR_REQUIRE(buffer[i], AQR_OUT_OF_MEMORY);
   }
   AQR_TRY(aqr_parallel(c, n_faces, turn_corners, j, 0, 0.1));
@@ -235,7 +227,7 @@ done:
 void aqr_field_free(aqr_context* c, const aqr_surface* s, aqr_field* field)
 {
   size_t n = s->n_points;
-  AQR_DROP(c, field->normal, 3 * n);
+  field->normal = NULL;
   AQR_DROP(c, field->min_direction, 3 * n);
   AQR_DROP(c, field->k_min, n);
   AQR_DROP(c, field->k_max, n);
@@ -250,9 +242,9 @@ aqr_status aqr_direction_field(
 {
   aqr_status status = AQR_OK;
   aqr_neighbours around = { 0 };
-  job j = { .s = s, .around = &around, .field = field, .t = tensors->normal };
+  job j = { .s = s, .around = &around, .field = field };
   AQR_REQUIRE(allocate(c, s, field), AQR_OUT_OF_MEMORY);
-  AQR_TRY(aqr_parallel(c, s->n_points, copy_normals, &j, 0, 0));
+  field->normal = tensors->normal;
   AQR_TRY(aqr_neighbours_build(c, s, &around));
   AQR_TRY(smooth_tensors(c, &j, tensors, iterations));
   AQR_TRY(aqr_cross_field(c, s, &around, min_cosine, field));

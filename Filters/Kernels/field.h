@@ -8,7 +8,7 @@
 
 typedef struct aqr_field
 {
-  double* normal;        /* 3 per point, unit, averaged over the sector's faces only */
+  const double* normal;  /* those of the tensors, which outlive the field */
   double* min_direction; /* 3 per point, unit, tangent to normal; max direction = normal x min
                             direction */
   double* k_min;         /* per point, signed, k_min <= k_max, in units of the scaled surface; positive on a
@@ -26,10 +26,10 @@ typedef struct aqr_field
 /* Symmetric 3x3 tensors, six numbers: xx yy zz xy xz yz. */
 typedef struct aqr_tensors
 {
-  double* t;      /* 6 per point: normal-cycle tensor averaged over the ball, eigenvalues = curvatures,
+  float* t;       /* 6 per point: normal-cycle tensor averaged over the ball, eigenvalues = curvatures,
                      with the eigenvectors of the two tangent ones swapped as DESIGN.md says (minimum
                      direction carries k_max) */
-  double* normal; /* 3 per point */
+  double* normal; /* 3 per point, unit, averaged over the sector's faces only */
 } aqr_tensors;
 
 /* Normal-cycle tensors over a ball of `radius` (paper 2). Never reaches across borders or seams. */

@@ -16,7 +16,7 @@
 
 enum
 {
-  cookie = 0x41515232,
+  cookie = 0x41515233,
   most_attempts = 9, /* at meeting a target number of points ... */
   fine_attempts = 4, /* ... of which the first ask for better than what counts as met */
   most_retries = 12, /* at a tolerance whose lines lost the topology */
@@ -91,7 +91,9 @@ aqr_options aqr_default_options(void)
     .symmetry_normal = { 1, 0, 0 },
     .largest_valence = 5,
     .convex_partition = 1,
-    .preserve_topology = 1 };
+    .preserve_topology = 1,
+    .show_field = 1,
+    .show_lines = 1 };
 }
 
 aqr_status aqr_remesher_new(const aqr_hooks* hooks, aqr_remesher** remesher)
@@ -695,17 +697,17 @@ static aqr_status run_lines(aqr_remesher* r, const aqr_options* o)
 }
 
 /* The lines are as large as all else together and nothing after them reads them: their view takes their place. */
-static aqr_status show_lines(aqr_remesher* r)
+static aqr_status show_lines(aqr_remesher* r, const aqr_options* o)
 {
   double began = aqr_seconds();
   r->context.peak_bytes = r->context.bytes;
-  aqr_status status = aqr_results_lines(r);
+  aqr_status status = o->show_lines ? aqr_results_lines(r) : AQR_OK;
   aqr_lines_free(&r->context, &r->lines);
   end_stage(r, AQR_STAGE_RESULT, began);
   return status;
 }
 
-static aqr_status run_results(aqr_remesher* r)
+static aqr_status run_results(aqr_remesher* r, const aqr_options* o)
 {
   aqr_distance features, boundary;
   aqr_status status = aqr_feature_error(&r->context, r->surface, &r->chains, &r->polygons, &features, &boundary);
@@ -716,7 +718,9 @@ static aqr_status run_results(aqr_remesher* r)
   if (status == AQR_OK)
     status = aqr_results_mesh(r);
   aqr_polygon_mesh_free(&r->context, &r->polygons);
-  if (status == AQR_OK && !r->field_view.points)
+  if (!o->show_field)
+    aqr_results_free_field(r);
+  else if (status == AQR_OK && !r->field_view.points)
     status = aqr_results_field(r);
   return status;
 }
@@ -729,14 +733,14 @@ static aqr_status run_stages(aqr_remesher* r, const aqr_options* o)
   AQR_TRY(run_cached(r, AQR_STAGE_FIELD, o, run_field));
   AQR_TRY(run_cached(r, AQR_STAGE_SIZING, o, run_sizing));
   AQR_TRY(run_lines(r, o));
-  AQR_TRY(show_lines(r));
+  AQR_TRY(show_lines(r, o));
   double began = begin_stage(r, AQR_STAGE_FIT);
   if (r->surface->mirrored)
     AQR_TRY(aqr_symmetry_open(&r->context, r->surface, &r->polygons));
   AQR_TRY(aqr_fit(&r->context, r->surface, r->field.normal, &r->polygons));
   end_stage(r, AQR_STAGE_FIT, began);
   began = begin_stage(r, AQR_STAGE_RESULT);
-  AQR_TRY(run_results(r));
+  AQR_TRY(run_results(r, o));
   end_stage(r, AQR_STAGE_RESULT, began);
 done:
   return status;
@@ -778,12 +782,12 @@ const aqr_mesh* aqr_remesher_mesh(const aqr_remesher* r)
 
 const aqr_field_view* aqr_remesher_field(const aqr_remesher* r)
 {
-  return r->has_result ? &r->field_view : NULL;
+  return r->has_result && r->field_view.points ? &r->field_view : NULL;
 }
 
 const aqr_lines_view* aqr_remesher_lines(const aqr_remesher* r)
 {
-  return r->has_result ? &r->lines_view : NULL;
+  return r->has_result && r->lines_view.offsets ? &r->lines_view : NULL;
 }
 
 const aqr_report* aqr_remesher_report(const aqr_remesher* r)

@@ -332,7 +332,7 @@ done:
 
 /* ---- the field of the half ---- */
 
-void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, double* tensors, double* normals)
+void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, float* tensors, double* normals)
 {
   vec3 n = plane->normal;
   for (size_t v = 0; v < half->n_points; v++)
@@ -340,7 +340,9 @@ void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, doub
     vec3 normal = v3_load(normals + 3 * v);
     if (!half->mirrored[half->clean[v]] || aqr_plane_creases(plane, normal))
       continue;
-    double* t = tensors + 6 * v;
+    double t[6];
+    for (size_t a = 0; a < 6; a++)
+      t[a] = (double)tensors[6 * v + a];
     /* what couples the plane's normal with directions along the plane changes its sign in the mirror */
     vec3 across = v3(
       t[0] * n.x + t[3] * n.y + t[4] * n.z, t[3] * n.x + t[1] * n.y + t[5] * n.z, t[4] * n.x + t[5] * n.y + t[2] * n.z);
@@ -351,6 +353,8 @@ void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, doub
     t[3] -= a.x * n.y + a.y * n.x;
     t[4] -= a.x * n.z + a.z * n.x;
     t[5] -= a.y * n.z + a.z * n.y;
+    for (size_t a = 0; a < 6; a++)
+      tensors[6 * v + a] = (float)t[a];
     v3_store(normals + 3 * v, aqr_plane_normal(plane, normal));
   }
 }

@@ -33,7 +33,7 @@ aqr_status aqr_symmetry_unmatched(aqr_context* c, const aqr_surface* s, const aq
 
 /* Makes tensors (6 per point: xx yy zz xy xz yz) and normals (3) on the plane those of the whole surface: the mean of
  * what the half gave and its mirror image. */
-void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, double* tensors, double* normals);
+void aqr_symmetry_complete(const aqr_surface* half, const aqr_plane* plane, float* tensors, double* normals);
 
 /* The part of a unit normal along the plane, of unit length; the normal itself where it has none. */
 static inline vec3 aqr_plane_normal(const aqr_plane* p, vec3 normal)

@@ -13,15 +13,16 @@ static aqr_status coarsen_grid(aqr_context* c, size_t nu, size_t nv, bool closed
   if (!surface_of_grid(&plain, nu, nv, closed, place, &s))
     return AQR_INTERNAL;
   aqr_index* faces = malloc(s.n_faces * sizeof *faces);
-  aqr_field field = { .normal = malloc(3 * s.n_points * sizeof(double)) };
+  double* normals = malloc(3 * s.n_points * sizeof *normals);
+  aqr_field field = { .normal = normals };
   for (aqr_index f = 0; f < s.n_faces; f++)
     faces[f] = f;
   for (size_t f = 0; f < s.n_faces; f++)
     for (unsigned i = 0; i < 3; i++)
-      v3_store(field.normal + 3 * (size_t)s.corner[3 * f + i], v3_unit(aqr_face_cross(&s, (aqr_index)f)));
+      v3_store(normals + 3 * (size_t)s.corner[3 * f + i], v3_unit(aqr_face_cross(&s, (aqr_index)f)));
   aqr_status status = aqr_coarsen_component(c, &s, &field, faces, s.n_faces, points, m);
   free(faces);
-  free(field.normal);
+  free(normals);
   free_surface(&s);
   return status;
 }

@@ -39,8 +39,11 @@ static void finish(estimate* e, shape* m)
   shape_free(m);
 }
 
-static double apply(const double* t, vec3 a, vec3 b)
+static double apply(const float* f, vec3 a, vec3 b)
 {
+  double t[6];
+  for (int i = 0; i < 6; i++)
+    t[i] = (double)f[i];
   return t[0] * a.x * b.x + t[1] * a.y * b.y + t[2] * a.z * b.z + t[3] * (a.x * b.y + a.y * b.x) +
          t[4] * (a.x * b.z + a.z * b.x) + t[5] * (a.y * b.z + a.z * b.y);
 }
@@ -49,7 +52,7 @@ static double apply(const double* t, vec3 a, vec3 b)
  * larger eigenvalue is that of minimum curvature. */
 static shape_curvature estimated(const estimate* e, aqr_index v)
 {
-  const double* t = e->t.t + 6 * (size_t)v;
+  const float* t = e->t.t + 6 * (size_t)v;
   vec3 n = v3_load(e->t.normal + 3 * (size_t)v), a, b;
   shape_tangents(n, &a, &b);
   shape_curvature k = shape_principal(n, a, b, apply(t, a, a), apply(t, a, b), apply(t, b, b));
@@ -165,7 +168,7 @@ AQR_TEST(ball_jumps_to_the_next_sheet)
   {
     size_t j = at[alone.s.origin[i].point[0]];
     same_points &= !memcmp(alone.s.points + 3 * i, together.s.points + 3 * j, 3 * sizeof(double));
-    same_tensors &= !memcmp(alone.t.t + 6 * i, together.t.t + 6 * j, 6 * sizeof(double));
+    same_tensors &= !memcmp(alone.t.t + 6 * i, together.t.t + 6 * j, 6 * sizeof(float));
   }
   CHECK(same_points);
   CHECK(same_tensors);
@@ -186,7 +189,7 @@ AQR_TEST(curvature_leaks_through_seam)
   estimate e = estimate_of(&m, 0.1);
   double largest = 0;
   for (size_t i = 0; i < 6 * e.s.n_points; i++)
-    largest = fmax(largest, fabs(e.t.t[i]));
+    largest = fmax(largest, fabs((double)e.t.t[i]));
   CHECK(largest > 1);
   aqr_tensors_free(&e.c, &e.s, &e.t);
   uint8_t* crease = calloc(3 * e.s.n_faces, 1);
@@ -200,7 +203,7 @@ AQR_TEST(curvature_leaks_through_seam)
   CHECK(e.s.n_points == m.n_points + 21);
   CHECK(aqr_curvature_tensors(&e.c, &e.s, 0.1, &e.t) == AQR_OK);
   for (size_t i = 0; i < 6 * e.s.n_points; i++)
-    if (!(fabs(e.t.t[i]) < 1e-9))
+    if (!(fabs((double)e.t.t[i]) < 1e-9))
       CHECK(false);
   free(crease);
   finish(&e, &m);
@@ -252,7 +255,7 @@ AQR_TEST(threads_change_tensors)
     other.c.hooks.parallel_for = backwards;
     CHECK(aqr_curvature_tensors(&other.c, &other.s, radius[r], &other.t) == AQR_OK);
     CHECK(calls > 2);
-    CHECK(!memcmp(one.t.t, other.t.t, 6 * one.s.n_points * sizeof(double)));
+    CHECK(!memcmp(one.t.t, other.t.t, 6 * one.s.n_points * sizeof(float)));
     CHECK(!memcmp(one.t.normal, other.t.normal, 3 * one.s.n_points * sizeof(double)));
     finish(&one, &m);
     finish(&other, &same);

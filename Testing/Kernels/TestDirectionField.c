@@ -161,7 +161,7 @@ static float triangle_confidence(const double angle[3], double difference)
     vec3 d = v3_madd(v3_scale(x, cos(a)), sin(a), y);
     const double t[6] = { d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z };
     for (size_t k = 0; k < 6; k++)
-      e.t.t[6 * i + k] = difference * t[k];
+      e.t.t[6 * i + k] = (float)(difference * t[k]);
     v3_store(e.t.normal + 3 * i, v3_unit(v3(n.x + 0.01 * ((double)i - 1), n.y, 0)));
   }
   CHECK(aqr_direction_field(&e.c, &e.s, &e.t, 0, min_cosine, &e.f) == AQR_OK);

@@ -428,6 +428,29 @@ AQR_TEST(a_change_of_density_alone_reuses_the_field_and_gives_what_a_fresh_run_g
   shape_free(&m);
 }
 
+static size_t bytes_at_end(const aqr_remesher* r)
+{
+  size_t n;
+  const aqr_stage* stages = aqr_remesher_stages(r, &n);
+  return stages[n - 1].end_bytes;
+}
+
+AQR_TEST(what_nobody_asks_to_be_shown_takes_no_memory)
+{
+  shape m = shape_torus(24, 9);
+  aqr_options all = aqr_default_options(), none = all;
+  none.show_field = none.show_lines = 0;
+  aqr_remesher* r = remesh(&m, &all);
+  uint64_t shown = hash_results(r);
+  size_t points = points_of(r), bytes = bytes_at_end(r), view = aqr_remesher_field(r)->number_of_points;
+  CHECK(again(r, none) == AQR_OK && points_of(r) == points);
+  CHECK(!aqr_remesher_field(r) && !aqr_remesher_lines(r));
+  CHECK(bytes - bytes_at_end(r) > 100 * view);
+  CHECK(again(r, all) == AQR_OK && hash_results(r) == shown && bytes_at_end(r) == bytes);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
 /* ---- every status ---- */
 
 static aqr_status status_of_input(const aqr_input* input)
