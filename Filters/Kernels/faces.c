@@ -190,13 +190,27 @@ static bool keeps_fan(const aqr_polygon_mesh* m, const aqr_polygon* g, unsigned 
   return valence >= (aqr_pm_on_border(m, g->vertex[corner]) ? 2 : 3);
 }
 
+/* The corners of a face, or more than `most` where there are: large faces are not walked around from each of their
+ * edges. */
+static size_t corners_up_to(const aqr_polygon_mesh* m, aqr_index f, size_t most)
+{
+  size_t n = 0;
+  aqr_index h = m->faces[f];
+  do
+  {
+    n++;
+    h = aqr_pm_next(m, h);
+  } while (h != m->faces[f] && n <= most);
+  return n;
+}
+
 /* Cuts the union of the two faces beside h anew where that is better. */
 static aqr_status redraw(aqr_context* c, aqr_polygon_mesh* m, aqr_index h, unsigned largest)
 {
   aqr_index f = aqr_pm_face(m, h), other = aqr_pm_face(m, h ^ 1), corner[AQR_POLYGON_CORNERS];
   aqr_polygon g = { .n = 0 };
-  size_t n_f = aqr_pm_face_size(m, f);
-  if (n_f + aqr_pm_face_size(m, other) - 2 > AQR_POLYGON_CORNERS || !aqr_can_merge(m, h))
+  size_t n_f = corners_up_to(m, f, AQR_POLYGON_CORNERS), n_other = corners_up_to(m, other, AQR_POLYGON_CORNERS);
+  if (n_f + n_other - 2 > AQR_POLYGON_CORNERS || !aqr_can_merge(m, h))
     return AQR_OK;
   double before = face_cost(m, f, AQR_NONE, AQR_NONE, NULL) + face_cost(m, other, AQR_NONE, AQR_NONE, NULL);
   for (aqr_index k = aqr_pm_next(m, h); k != h; k = aqr_pm_next(m, k))

@@ -500,6 +500,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
   const double per = (o->pure_quads ? quads_per_face : 1) * (o->symmetry ? 2 : 1),
                goal = (double)o->target_points / per;
   double ask = goal / largest_excess, points = goal, before[3] = { 0, 0, 0 };
+  double last_made = INFINITY;
   trial trials[most_attempts];
   outcome best = { .report = r->report, .error = INFINITY };
   for (int i = 0; i < most_attempts; i++)
@@ -524,6 +525,9 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
     if (error < (i < fine_attempts ? target_accuracy : missed_accuracy))
       break;
     /* cuts for the topology add points whatever the lines; vertices that merge are a share of them */
+    if (points <= 1 && made > 0.98 * last_made)
+      break; /* no fewer come where fewest are asked for: chains alone give more */
+    last_made = made;
     points = made > reached.points ? fmax(1, goal - (made - reached.points)) : goal * reached.points / made;
     trials[i] = (trial){ ask, reached };
     ask = ask_again(trials, i + 1, points);

@@ -267,4 +267,25 @@ AQR_TEST(a_target_on_squeezed_surfaces_costs_no_more_than_on_a_clean_one)
   CHECK_BELOW(worst, 10);
 }
 
+/* Attempt followed attempt at a target that the locked edges alone exceed many times over. */
+AQR_TEST(a_target_below_what_chains_give_is_soon_given_up)
+{
+  shape m = shape_grid(40, 40, true, false, 0, 1, place_on_cylinder);
+  int64_t* locked = malloc(2 * m.n_triangles * sizeof *locked);
+  size_t n = 0;
+  for (size_t f = 0; f < m.n_triangles; f += 7)
+    for (size_t i = 0; i < 2; i++)
+      locked[n++] = m.triangles[3 * f + i];
+  aqr_input input = shape_input(&m);
+  input.number_of_locked = n / 2;
+  input.locked = locked;
+  aqr_options o = aqr_default_options();
+  double once = work_on(&input, &o);
+  o.density = AQR_DENSITY_POINTS;
+  o.target_points = 4;
+  CHECK_BELOW(work_on(&input, &o) / once, 3);
+  free(locked);
+  shape_free(&m);
+}
+
 AQR_TEST_MAIN
