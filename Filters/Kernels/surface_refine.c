@@ -7,7 +7,9 @@
 enum
 {
   most_rounds = 400,
-  most_growth = 64 /* times the number of faces at the start, and a million: the bound of the loop */
+  most_growth = 8,   /* times the number of faces at the start ... */
+  free_faces = 16000 /* ... and these many: more than a closed surface without folds takes. Beyond that the longest
+                        edges are halved and the others left, or a soup of large triangles costs what a scan does */
 };
 
 static const double step_down = 0.75; /* of the length that a round halves */
@@ -105,7 +107,7 @@ aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edg
 {
   refiner r = { .c = c, .s = s };
   aqr_status status = AQR_OK;
-  size_t before = s->n_points, limit = most_growth * s->n_faces + 1000000;
+  size_t before = s->n_points, limit = most_growth * s->n_faces + free_faces;
   double least2 = longest_edge * longest_edge, longest2 = 0;
   for (aqr_index h = 0; h < 3 * s->n_faces; h++)
   {

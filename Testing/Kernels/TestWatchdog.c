@@ -288,4 +288,21 @@ AQR_TEST(a_target_below_what_chains_give_is_soon_given_up)
   shape_free(&m);
 }
 
+/* Each triangle across the whole box was halved as if it were all of the surface. */
+AQR_TEST(a_soup_of_large_triangles_costs_no_more_than_a_clean_surface)
+{
+  aqr_options o = aqr_default_options();
+  o.density = AQR_DENSITY_POINTS;
+  o.target_points = 100;
+  o.feature_lines = 0;
+  shape m = shape_torus(10, 1);
+  double clean = clean_work(m.n_triangles, &o);
+  unsigned state = 1;
+  for (size_t i = 0; i < 3 * m.n_points; i++)
+    m.points[i] = shape_random(&state);
+  aqr_input input = shape_input(&m);
+  CHECK_BELOW(work_on(&input, &o) / clean, 10);
+  shape_free(&m);
+}
+
 AQR_TEST_MAIN
