@@ -220,6 +220,42 @@ void CheckBinary(std::istream& stream, const Header& header, std::uint64_t left)
 }
 
 //------------------------------------------------------------------------------
+// Of a .vtk file; 0 where its first line names none.
+int VersionOf(std::istream& stream)
+{
+  std::string line;
+  std::getline(stream, line);
+  const size_t version = line.find("Version ");
+  return version == std::string::npos ? 0 : std::atoi(line.c_str() + version + 8);
+}
+
+//------------------------------------------------------------------------------
+// Lists of cells, each the number of its points and these points.
+void CheckCells(std::istream& stream, std::uint64_t cells, std::uint64_t numbers)
+{
+  std::uint64_t found = 0;
+  long long number = 0;
+  for (std::uint64_t i = 0; i < cells; ++i)
+  {
+    stream >> number;
+    for (long long left = number; left > 0 && stream; --left)
+    {
+      stream >> number;
+      ++found;
+    }
+    if (!stream)
+    {
+      throw CutShort(TooEarly);
+    }
+    ++found;
+  }
+  if (found != numbers)
+  {
+    throw CutShort("it announces " + std::to_string(numbers) + " numbers, and holds " + std::to_string(found));
+  }
+}
+
+//------------------------------------------------------------------------------
 std::uint64_t SizeOf(const std::string& file)
 {
   std::error_code code;
@@ -290,17 +326,41 @@ void CheckStl(const std::string& file)
 }
 
 //------------------------------------------------------------------------------
-void CheckVtk(const std::string& file, long long polygons)
+void CheckVtkText(const std::string& file)
 {
   std::ifstream stream(file, std::ios::binary);
+  const int version = VersionOf(stream);
   std::string line;
+  std::getline(stream, line); // a title
   std::getline(stream, line);
-  const size_t version = line.find("Version ");
-  if (version == std::string::npos || std::atoi(line.c_str() + version + 8) >= 5)
+  if (version == 0 || version >= 5 || line.compare(0, 5, "ASCII") != 0)
   {
     return;
   }
   while (std::getline(stream, line))
+  {
+    std::istringstream words(line);
+    std::string word;
+    std::string cells;
+    std::string numbers;
+    words >> word >> cells >> numbers;
+    if (word == "POLYGONS" || word == "TRIANGLE_STRIPS" || word == "LINES" || word == "VERTICES")
+    {
+      CheckCells(stream, Whole(cells), Whole(numbers));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void CheckVtk(const std::string& file, long long polygons)
+{
+  std::ifstream stream(file, std::ios::binary);
+  const int version = VersionOf(stream);
+  if (version == 0 || version >= 5)
+  {
+    return;
+  }
+  for (std::string line; std::getline(stream, line);)
   {
     std::istringstream words(line);
     std::string word;

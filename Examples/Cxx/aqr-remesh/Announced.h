@@ -19,6 +19,10 @@ void CheckPly(const std::string& file);
 // vtkSTLReader takes as many triangles as there are, without a word.
 void CheckStl(const std::string& file);
 
+// vtkPolyDataReader of VTK 9.1 reads through wild pointers where a text file before version 5 has fewer polygons, lines
+// or numbers of them than it says.
+void CheckVtkText(const std::string& file);
+
 // vtkPolyDataReader passes over the number of polygons in files before version 5, which count what is in them
 // otherwise.
 void CheckVtk(const std::string& file, long long polygons);

@@ -127,6 +127,7 @@ vtkSmartPointer<vtkPolyData> ReadByExtension(const std::string& extension, const
   }
   if (extension == ".vtk")
   {
+    CheckVtkText(file);
     auto surface = Read<vtkPolyDataReader>(file);
     CheckVtk(file, surface->GetNumberOfPolys());
     return surface;
