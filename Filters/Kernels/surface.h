@@ -117,7 +117,8 @@ aqr_status aqr_surface_rank_points(aqr_context* c, const aqr_surface* s, size_t 
  * and points are split into sectors. */
 aqr_status aqr_surface_cut(aqr_context* c, aqr_surface* s, const uint8_t* is_crease);
 
-/* Halves edges longer than longest_edge at their middle, longest first, with the triangles beside them (paper 3.2). */
+/* Halves edges longer than longest_edge at their middle, longest first, with the triangles beside them (paper 3.2),
+ * until there are 8 times the faces and 16000 more. */
 aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edge, size_t* added);
 
 /* Gives every fan of faces a cleaned point of its own, and all points their fans; clean and n_clean are set. */
