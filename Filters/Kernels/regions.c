@@ -39,8 +39,8 @@ typedef struct regions
   /* Shared by threads; whatever their order, a root is the least item of its region and sums are the same. */
   shared_index* parent; /* union-find over items: faces without chords, then loops */
   size_t n_items;
-  shared_number* euler;  /* per root */
-  shared_flag* bordered; /* per root: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
+  shared_number* euler;  /* per item, and of its whole region per root when all is counted */
+  shared_flag* bordered; /* as euler: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
   uint8_t* suspect;      /* per face: looked at */
   uint8_t* large;        /* per face: has more chords than threads have room for */
   uint8_t* is_bare;      /* per face: of a component without network */
@@ -103,14 +103,15 @@ static void unite(const regions* r, aqr_index a, aqr_index b)
   }
 }
 
-static void add_euler(const regions* r, aqr_index root, int32_t more)
+static void add_euler(const regions* r, aqr_index item, int32_t more)
 {
-  atomic_fetch_add_explicit(&r->euler[root], more, memory_order_relaxed);
+  atomic_fetch_add_explicit(&r->euler[item], more, memory_order_relaxed);
 }
 
-static void add_border(const regions* r, aqr_index root, uint8_t bits)
+static void add_border(const regions* r, aqr_index item, uint8_t bits)
 {
-  atomic_fetch_or_explicit(&r->bordered[root], bits, memory_order_relaxed);
+  if (bits & ~atomic_load_explicit(&r->bordered[item], memory_order_relaxed))
+    atomic_fetch_or_explicit(&r->bordered[item], bits, memory_order_relaxed);
 }
 
 static aqr_index item_after(const regions* r, const aqr_border_mark* m)
@@ -184,18 +185,97 @@ static void unite_inside(const regions* r, const aqr_layout* a)
     r->start[3 * a->face + k] = kept_on(a, k) ? AQR_NONE : item_at_start(a, k);
 }
 
-static void unite_faces(void* data, size_t begin, size_t end)
+static bool on_chain(const regions* r, aqr_index point)
+{
+  return r->chains->is_node[r->s->clean[point]] != 0;
+}
+
+/* A stretch between two cells of one region. */
+static void count_stretch(const regions* r, aqr_index item, bool leaves)
+{
+  add_euler(r, item, -1);
+  if (leaves)
+    add_border(r, item, 4);
+}
+
+static void count_plain(const regions* r, aqr_index f)
+{
+  const aqr_surface* s = r->s;
+  int32_t euler = 1;
+  uint8_t bordered = 2;
+  for (aqr_index h = 3 * f; h < 3 * f + 3; h++)
+  {
+    aqr_index t = aqr_twin(s, h), v = aqr_from(s, h);
+    bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
+    euler += s->fan[v] == h && !on_chain(r, v);
+    euler -= t != AQR_NONE && (t > h || leaves);
+    bordered |= leaves ? 4 : 0;
+  }
+  atomic_store_explicit(&r->euler[f], euler, memory_order_relaxed); /* the item is this face's alone */
+  atomic_store_explicit(&r->bordered[f], bordered, memory_order_relaxed);
+}
+
+/* Cells minus stretches plus vertices. */
+static void count_cells(const regions* r, const aqr_layout* a)
+{
+  const aqr_surface* s = r->s;
+  for (size_t i = 0; i < a->n_cells; i++)
+  {
+    add_euler(r, a->item[i], 1);
+    add_border(r, a->item[i], 2);
+  }
+  for (unsigned k = 0; k < 3; k++)
+  {
+    aqr_index h = 3 * a->face + k, t = aqr_twin(s, h), v = aqr_from(s, h);
+    if (s->fan[v] == h && !on_chain(r, v))
+      add_euler(r, item_at_start(a, k), 1);
+    bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
+    if (t == AQR_NONE || (t < h && !leaves))
+      continue;
+    size_t first, end;
+    aqr_layout_marks_on(a, k, &first, &end);
+    count_stretch(r, a->item[aqr_layout_cell_before(a, first)], leaves);
+    for (size_t i = first; i < end; i++)
+      if (a->marks[i].kept)
+        count_stretch(r, a->item[a->marks[i].cell], leaves);
+  }
+}
+
+static void enter_face(const regions* r, const aqr_layout* a)
+{
+  unite_inside(r, a);
+  count_cells(r, a);
+}
+
+static void enter_faces(void* data, size_t begin, size_t end)
 {
   regions* r = data;
   aqr_small_layout room;
   aqr_layout a = aqr_layout_in(&room);
   for (aqr_index f = (aqr_index)begin; f < end; f++)
     if (r->suspect[f] && is_plain(r, f))
+    {
       r->start[3 * f] = r->start[3 * f + 1] = r->start[3 * f + 2] = f;
+      count_plain(r, f);
+    }
     else if (r->suspect[f] && aqr_layout_face(NULL, r->s, r->lines, r->net, f, &a))
-      unite_inside(r, &a);
+      enter_face(r, &a);
     else
       r->large[f] = r->suspect[f];
+}
+
+/* What threads have no room for. */
+static aqr_status enter_large(regions* r)
+{
+  for (aqr_index f = 0; f < r->s->n_faces; f++)
+  {
+    if (!r->large[f])
+      continue;
+    if (!lay_out(r, f))
+      return AQR_OUT_OF_MEMORY;
+    enter_face(r, &r->at);
+  }
+  return AQR_OK;
 }
 
 /* Unites over whole edges. Stretches of cut edges need nothing: both sides of them border the same loop. */
@@ -210,103 +290,29 @@ static void unite_over(void* data, size_t begin, size_t end)
   }
 }
 
-static bool on_chain(const regions* r, aqr_index point)
-{
-  return r->chains->is_node[r->s->clean[point]] != 0;
-}
-
-/* A stretch between two cells of one region. */
-static void count_stretch(const regions* r, aqr_index item, bool leaves)
-{
-  aqr_index root = find(r, item);
-  add_euler(r, root, -1);
-  if (leaves)
-    add_border(r, root, 4);
-}
-
-static void count_plain(const regions* r, aqr_index f)
-{
-  const aqr_surface* s = r->s;
-  aqr_index root = find(r, f);
-  int32_t euler = 1;
-  uint8_t bordered = 2;
-  for (aqr_index h = 3 * f; h < 3 * f + 3; h++)
-  {
-    aqr_index t = aqr_twin(s, h), v = aqr_from(s, h);
-    bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
-    euler += s->fan[v] == h && !on_chain(r, v);
-    euler -= t != AQR_NONE && (t > h || leaves);
-    bordered |= leaves ? 4 : 0;
-  }
-  add_euler(r, root, euler);
-  add_border(r, root, bordered);
-}
-
-/* Cells minus stretches plus vertices. */
-static void count_cells(const regions* r, const aqr_layout* a)
-{
-  const aqr_surface* s = r->s;
-  for (size_t i = 0; i < a->n_cells; i++)
-  {
-    aqr_index root = find(r, a->item[i]);
-    add_euler(r, root, 1);
-    add_border(r, root, 2);
-  }
-  for (unsigned k = 0; k < 3; k++)
-  {
-    aqr_index h = 3 * a->face + k, t = aqr_twin(s, h), v = aqr_from(s, h);
-    if (s->fan[v] == h && !on_chain(r, v))
-      add_euler(r, find(r, item_at_start(a, k)), 1);
-    bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
-    if (t == AQR_NONE || (t < h && !leaves))
-      continue;
-    size_t first, end;
-    aqr_layout_marks_on(a, k, &first, &end);
-    count_stretch(r, a->item[aqr_layout_cell_before(a, first)], leaves);
-    for (size_t i = first; i < end; i++)
-      if (a->marks[i].kept)
-        count_stretch(r, a->item[a->marks[i].cell], leaves);
-  }
-}
-
-static void count_faces(void* data, size_t begin, size_t end)
+/* What the items of a region were counted goes to its root. */
+static void add_up(void* data, size_t begin, size_t end)
 {
   const regions* r = data;
-  aqr_small_layout room;
-  aqr_layout a = aqr_layout_in(&room);
-  for (aqr_index f = (aqr_index)begin; f < end; f++)
-    if (r->suspect[f] && is_plain(r, f))
-      count_plain(r, f);
-    else if (r->suspect[f] && aqr_layout_face(NULL, r->s, r->lines, r->net, f, &a))
-      count_cells(r, &a);
-}
-
-/* What threads have no room for. */
-static aqr_status visit_large(regions* r, void (*visit)(const regions* r, const aqr_layout* a))
-{
-  for (aqr_index f = 0; f < r->s->n_faces; f++)
+  for (aqr_index i = (aqr_index)begin; i < end; i++)
   {
-    if (!r->large[f])
+    aqr_index root = find(r, i);
+    if (root == i)
       continue;
-    if (!lay_out(r, f))
-      return AQR_OUT_OF_MEMORY;
-    visit(r, &r->at);
+    add_euler(r, root, atomic_load_explicit(&r->euler[i], memory_order_relaxed));
+    add_border(r, root, atomic_load_explicit(&r->bordered[i], memory_order_relaxed));
   }
-  return AQR_OK;
 }
 
 static void begin_items(void* data, size_t begin, size_t end)
 {
   regions* r = data;
   for (size_t i = begin; i < end; i++)
+  {
     atomic_init(&r->parent[i], (aqr_index)i);
-}
-
-static void mark_loops(void* data, size_t begin, size_t end)
-{
-  regions* r = data;
-  for (size_t i = begin; i < end; i++)
-    add_border(r, find(r, (aqr_index)(r->s->n_faces + i)), 1);
+    atomic_init(&r->euler[i], 0);
+    atomic_init(&r->bordered[i], i >= r->s->n_faces);
+  }
 }
 
 static void mark_bare(void* data, size_t begin, size_t end)
@@ -323,12 +329,10 @@ static aqr_status count(regions* r)
   aqr_status status = AQR_OK;
   size_t n = r->s->n_faces;
   AQR_TRY(aqr_parallel(r->c, r->n_items, begin_items, r, 0, 0));
-  AQR_TRY(aqr_parallel(r->c, n, unite_faces, r, 0, 0.4));
-  AQR_TRY(visit_large(r, unite_inside));
-  AQR_TRY(aqr_parallel(r->c, 3 * n, unite_over, r, 0.4, 0.5));
-  AQR_TRY(aqr_parallel(r->c, n, count_faces, r, 0.5, 0.9));
-  AQR_TRY(visit_large(r, count_cells));
-  AQR_TRY(aqr_parallel(r->c, r->net->n_loops, mark_loops, r, 0.9, 0.9));
+  AQR_TRY(aqr_parallel(r->c, n, enter_faces, r, 0, 0.7));
+  AQR_TRY(enter_large(r));
+  AQR_TRY(aqr_parallel(r->c, 3 * n, unite_over, r, 0.7, 0.8));
+  AQR_TRY(aqr_parallel(r->c, r->n_items, add_up, r, 0.8, 0.9));
   AQR_TRY(aqr_parallel(r->c, n, mark_bare, r, 0.9, 0.9));
 done:
   return status;
@@ -823,8 +827,8 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   r.n_items = s->n_faces + net->n_loops;
   r.start = AQR_NEW(c, aqr_index, 3 * s->n_faces);
   r.parent = AQR_NEW(c, shared_index, r.n_items);
-  r.euler = AQR_NEW0(c, shared_number, r.n_items);
-  r.bordered = AQR_NEW0(c, shared_flag, r.n_items);
+  r.euler = AQR_NEW(c, shared_number, r.n_items);
+  r.bordered = AQR_NEW(c, shared_flag, r.n_items);
   r.large = AQR_NEW0(c, uint8_t, s->n_faces);
   r.slot = AQR_NEW(c, aqr_index, s->n_faces);
   AQR_REQUIRE(r.start && r.parent && r.euler && r.bordered && r.large && r.slot, AQR_OUT_OF_MEMORY);
