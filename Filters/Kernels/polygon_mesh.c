@@ -488,50 +488,102 @@ aqr_status aqr_pm_append_mesh(aqr_context* c, aqr_polygon_mesh* m, const aqr_pol
   return AQR_OK;
 }
 
+static aqr_index lesser_end(const aqr_polygon_mesh* m, const aqr_index* vertex, size_t edge)
+{
+  aqr_index a = vertex[m->half_edges[2 * edge].from], b = vertex[m->half_edges[2 * edge + 1].from];
+  return a < b ? a : b;
+}
+
+static aqr_index renumbered(const aqr_index* rank, aqr_index h)
+{
+  return 2 * rank[h >> 1] + (h & 1);
+}
+
+/* Where each living edge goes: edges come in the order of their lesser ends. first: as many zeros as there are vertices
+ * and one more; it holds where the edges of each end. */
+static void rank_edges(const aqr_polygon_mesh* m, const aqr_index* vertex, aqr_index* first, aqr_index* rank)
+{
+  for (size_t e = 0; 2 * e < m->n_half_edges; e++)
+    if (aqr_pm_edge_lives(m, (aqr_index)(2 * e)))
+      first[lesser_end(m, vertex, e) + 1]++;
+  for (size_t v = 0; v < m->n_vertices; v++)
+    first[v + 1] += first[v];
+  for (size_t e = 0; 2 * e < m->n_half_edges; e++)
+    if (aqr_pm_edge_lives(m, (aqr_index)(2 * e)))
+      rank[e] = first[lesser_end(m, vertex, e)]++;
+}
+
 aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m)
 {
   aqr_status status = AQR_OK;
-  size_t nv = 0, nh = 0, nf = 0;
+  size_t nv = 0, nh = 0, nf = 0, n = m->n_half_edges, n_first = m->n_vertices + 1;
   aqr_index* vertex = AQR_NEW(c, aqr_index, m->n_vertices);
-  aqr_index* half_edge = AQR_NEW(c, aqr_index, m->n_half_edges);
+  aqr_index* first = AQR_NEW0(c, aqr_index, n_first);
+  aqr_index* rank = AQR_NEW(c, aqr_index, n / 2);
   aqr_index* face = AQR_NEW(c, aqr_index, m->n_faces);
-  AQR_REQUIRE(vertex && half_edge && face, AQR_OUT_OF_MEMORY);
+  aqr_half_edge* half_edges = AQR_NEW(c, aqr_half_edge, n);
+  uint8_t* edge_type = AQR_NEW(c, uint8_t, n / 2);
+  aqr_index* faces = AQR_NEW(c, aqr_index, m->n_faces);
+  size_t most_faces = m->n_faces;
+  AQR_REQUIRE(vertex && first && rank && face && half_edges && edge_type && faces, AQR_OUT_OF_MEMORY);
+  for (size_t v = 0; v < m->n_vertices; v++)
+    if (m->vertices[v].out != AQR_NONE)
+      vertex[v] = (aqr_index)nv++;
+  rank_edges(m, vertex, first, rank);
+  for (aqr_index h = 0; h < n; h++)
+    if (aqr_pm_edge_lives(m, h))
+    {
+      const aqr_half_edge* e = &m->half_edges[h];
+      half_edges[renumbered(rank, h)] =
+        (aqr_half_edge){ renumbered(rank, e->next), renumbered(rank, e->prev), vertex[e->from], e->face };
+      edge_type[rank[h >> 1]] = m->edge_type[h >> 1];
+      nh++;
+    }
   for (size_t v = 0; v < m->n_vertices; v++)
     if (m->vertices[v].out != AQR_NONE)
     {
-      vertex[v] = (aqr_index)nv;
-      m->vertices[nv++] = m->vertices[v];
-    }
-  for (size_t h = 0; h < m->n_half_edges; h++)
-    if (m->half_edges[h].from != AQR_NONE)
-    {
-      half_edge[h] = (aqr_index)nh;
-      m->edge_type[nh >> 1] = m->edge_type[h >> 1];
-      m->half_edges[nh++] = m->half_edges[h];
+      m->vertices[vertex[v]] = m->vertices[v];
+      m->vertices[vertex[v]].out = renumbered(rank, m->vertices[v].out);
     }
   for (size_t f = 0; f < m->n_faces; f++)
-    if (m->faces[f] != AQR_NONE)
-    {
-      face[f] = (aqr_index)nf;
-      m->faces[nf++] = half_edge[m->faces[f]];
-    }
-  for (size_t h = 0; h < nh; h++)
+    face[f] = AQR_NONE;
+  for (aqr_index h = 0; h < nh; h++)
   {
-    aqr_half_edge* e = &m->half_edges[h];
-    *e = (aqr_half_edge){ half_edge[e->next], half_edge[e->prev], vertex[e->from],
-      e->face == AQR_NONE ? AQR_NONE : face[e->face] };
+    aqr_index f = half_edges[h].face;
+    if (f == AQR_NONE)
+      continue;
+    if (face[f] == AQR_NONE)
+    {
+      faces[nf] = renumbered(rank, m->faces[f]);
+      face[f] = (aqr_index)nf++;
+    }
+    half_edges[h].face = face[f];
   }
-  for (size_t v = 0; v < nv; v++)
-    m->vertices[v].out = half_edge[m->vertices[v].out];
 done:
   AQR_DROP(c, vertex, m->n_vertices);
-  AQR_DROP(c, half_edge, m->n_half_edges);
+  AQR_DROP(c, first, n_first);
+  AQR_DROP(c, rank, n / 2);
   AQR_DROP(c, face, m->n_faces);
   if (status == AQR_OK)
   {
+    AQR_DROP(c, m->half_edges, m->half_edge_capacity);
+    AQR_DROP(c, m->edge_type, m->edge_capacity);
+    AQR_DROP(c, m->faces, m->face_capacity);
+    m->faces = faces;
+    m->face_capacity = most_faces;
+    m->half_edges = half_edges;
+    m->half_edge_capacity = n;
+    m->edge_type = edge_type;
+    m->edge_capacity = n / 2;
     m->n_vertices = nv;
     m->n_half_edges = nh;
     m->n_faces = nf;
+  }
+  else
+  {
+    AQR_DROP(c, half_edges, n);
+    AQR_DROP(c, edge_type, n / 2);
+    AQR_DROP(c, faces, most_faces);
   }
   return status;
 }

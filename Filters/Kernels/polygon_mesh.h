@@ -131,7 +131,8 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
   const size_t* offsets, size_t n_faces, const aqr_index* connectivity);
 /* Appends another mesh with all that is known about it. */
 aqr_status aqr_pm_append_mesh(aqr_context* c, aqr_polygon_mesh* m, const aqr_polygon_mesh* added);
-/* Forgets what was deleted; order is kept. */
+/* Forgets what was deleted. Vertices keep their order, edges and faces come in that of their vertices: what lies
+ * together on the surface then lies together in memory, which lines, led all over it, do not. */
 aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m);
 void aqr_polygon_mesh_free(aqr_context* c, aqr_polygon_mesh* m);
 

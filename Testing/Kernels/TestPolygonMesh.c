@@ -140,4 +140,30 @@ AQR_TEST(euler_operators_in_any_order_keep_the_links_and_the_topology)
   }
 }
 
+static aqr_index lesser_end(const aqr_polygon_mesh* m, aqr_index edge)
+{
+  aqr_index a = m->half_edges[2 * edge].from, b = m->half_edges[2 * edge + 1].from;
+  return a < b ? a : b;
+}
+
+AQR_TEST(edges_and_faces_do_not_lie_far_from_their_vertices_in_memory)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(torus_of_quads(&c, 7, 6, &m));
+  disturb(&c, &m, 3, 150);
+  CHECK(aqr_pm_compact(&c, &m) == AQR_OK);
+  size_t edges_before = 0, faces_before = 0, seen = 0;
+  for (aqr_index e = 1; e < m.n_half_edges / 2; e++)
+    edges_before += lesser_end(&m, e) < lesser_end(&m, e - 1);
+  for (aqr_index h = 0; h < m.n_half_edges; h++)
+  {
+    faces_before += m.half_edges[h].face > seen; /* first met in the order of half-edges */
+    seen += m.half_edges[h].face == seen;
+  }
+  CHECK(edges_before == 0 && faces_before == 0 && seen == m.n_faces);
+  aqr_polygon_mesh_free(&c, &m);
+  CHECK(c.bytes == 0);
+}
+
 AQR_TEST_MAIN
