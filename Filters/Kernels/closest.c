@@ -12,8 +12,9 @@ static double share(double part, double whole)
   return whole > 0 ? part / whole : 0;
 }
 
-/* The point of a face closest to p, by the regions of its plane (Ericson, Real-Time Collision Detection, 5.1.5). */
-static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
+/* Takes the point of a face closest to p where it is nearer than the best so far, by the regions of its plane (Ericson,
+ * Real-Time Collision Detection, 5.1.5). */
+static void keep_nearer(const aqr_surface* s, aqr_index f, vec3 p, aqr_closest* best)
 {
   vec3 a = aqr_point(s, s->corner[3 * f]), b = aqr_point(s, s->corner[3 * f + 1]),
        c = aqr_point(s, s->corner[3 * f + 2]);
@@ -63,21 +64,15 @@ static aqr_closest on_face(const aqr_surface* s, aqr_index f, vec3 p)
   double u = v == 0 ? 1 - w : w == 0 ? 1 - v : greater(0, 1 - v - w);
   if (v + w >= 1)
     u = 0;
-  aqr_closest r = { { f, { u, v, w } }, v3_madd(v3_madd(a, v, ab), w, ac), 0 };
-  r.distance2 = v3_norm2(v3_sub(p, r.position));
-  return r;
+  vec3 at = v3_madd(v3_madd(a, v, ab), w, ac);
+  double distance2 = v3_norm2(v3_sub(p, at));
+  if (distance2 < best->distance2)
+    *best = (aqr_closest){ { f, { u, v, w } }, at, distance2 };
 }
 
 static aqr_index other_side(const aqr_surface* s, aqr_index h, bool over_seams)
 {
   return over_seams ? aqr_any_twin(s, h) : aqr_twin(s, h);
-}
-
-static void keep_nearer(const aqr_surface* s, aqr_index f, vec3 p, aqr_closest* best)
-{
-  aqr_closest x = on_face(s, f, p);
-  if (x.distance2 < best->distance2)
-    *best = x;
 }
 
 /* The nearest of the faces around the start of h. */
@@ -102,7 +97,8 @@ static void around(const aqr_surface* s, aqr_index h, vec3 p, bool over_seams, a
 
 aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams)
 {
-  aqr_closest r = on_face(s, start, p);
+  aqr_closest r = { { start, { 1, 0, 0 } }, aqr_point(s, s->corner[3 * start]), INFINITY };
+  keep_nearer(s, start, p, &r);
   for (unsigned step = 0; step < most_steps; step++)
   {
     aqr_index f = r.place.face;
