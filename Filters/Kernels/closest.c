@@ -95,16 +95,17 @@ static void around(const aqr_surface* s, aqr_index h, vec3 p, bool over_seams, a
   }
 }
 
-aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams)
+void aqr_closest_near(
+  const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams, aqr_closest* r)
 {
-  aqr_closest r = { { start, { 1, 0, 0 } }, aqr_point(s, s->corner[3 * start]), INFINITY };
-  keep_nearer(s, start, p, &r);
+  *r = (aqr_closest){ { start, { 1, 0, 0 } }, aqr_point(s, s->corner[3 * start]), INFINITY };
+  keep_nearer(s, start, p, r);
   for (unsigned step = 0; step < most_steps; step++)
   {
-    aqr_index f = r.place.face;
+    aqr_index f = r->place.face;
     unsigned zeros = 0, corner = 0, opposite = 0;
     for (unsigned i = 0; i < 3; i++)
-      if (r.place.bary[i] == 0)
+      if (r->place.bary[i] == 0)
       {
         zeros++;
         opposite = i;
@@ -117,12 +118,11 @@ aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsi
     {
       aqr_index t = other_side(s, 3 * f + (opposite + 1) % 3, over_seams);
       if (t != AQR_NONE)
-        keep_nearer(s, aqr_face_of(t), p, &r);
+        keep_nearer(s, aqr_face_of(t), p, r);
     }
     else
-      around(s, 3 * f + corner, p, over_seams, &r);
-    if (r.place.face == f)
+      around(s, 3 * f + corner, p, over_seams, r);
+    if (r->place.face == f)
       break;
   }
-  return r;
 }

@@ -14,8 +14,9 @@ typedef struct aqr_closest
 } aqr_closest;
 
 /* From face `start` to neighbouring faces as long as they are nearer to p, at most most_steps of them. Seams are
- * crossed on demand, borders never. */
-aqr_closest aqr_closest_near(const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams);
+ * crossed on demand, borders never. *r is filled where it lies: copies of it cost as much as the look at a face. */
+void aqr_closest_near(
+  const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams, aqr_closest* r);
 
 static inline vec3 aqr_place_position(const aqr_surface* s, const aqr_place* at)
 {

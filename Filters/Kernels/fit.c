@@ -4,6 +4,7 @@
 #include "chain_places.h"
 #include "closest.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 enum
@@ -59,6 +60,9 @@ typedef struct link
   float block[6];
 } link;
 
+/* What threads write to without waiting for each other. */
+typedef _Atomic(uint8_t) shared_flag;
+
 typedef struct fit
 {
   const aqr_surface* s;
@@ -71,15 +75,18 @@ typedef struct fit
   aqr_index* corners;   /* 3 * triangle + corner */
   link* links;          /* per vertex: one more than its corners, as a fan has at most so many neighbours */
   vec3 *move, *residual, *direction, *image, *before;
-  vec3* across;    /* per edge: along the surface and across the edge, scaled by the root of what holds it */
-  double* trace;   /* per vertex: of its part of the error */
-  double* block;   /* per vertex: its own block of the matrix, as in link */
-  double* inverse; /* of it; 0 where the vertex stays */
-  double* error;   /* per vertex: of its triangles, before the last move */
-  uint8_t* back;   /* per vertex: the last move was damped or taken back */
-  uint8_t* folds;  /* per half-edge: the corner where it begins would fold */
-  double hold;     /* along the surface */
-  bool partly;     /* only triangles with vertices taken back are measured */
+  vec3* across;       /* per edge: along the surface and across the edge, scaled by the root of what holds it */
+  double* trace;      /* per vertex: of its part of the error */
+  double* block;      /* per vertex: its own block of the matrix, as in link */
+  double* inverse;    /* of it; 0 where the vertex stays */
+  double* product;    /* per vertex: its term of the sum that the solver takes next */
+  double* error;      /* per vertex: of its triangles, before the last move */
+  uint8_t* back;      /* per vertex: the last move was damped or taken back */
+  shared_flag* folds; /* per vertex: at a corner that folds */
+  shared_flag folded; /* any does */
+  double hold;        /* along the surface */
+  double step;        /* of the solver along the direction, or how much of the last direction the next one keeps */
+  double keep;        /* of moves that fold */
 } fit;
 
 static void snap(void* data, size_t begin, size_t end)
@@ -91,7 +98,8 @@ static void snap(void* data, size_t begin, size_t end)
     bool placed = x->place.bary[0] + x->place.bary[1] + x->place.bary[2] > 0;
     if (x->kind != AQR_VERTEX_INTERIOR && placed)
       continue;
-    aqr_closest near = aqr_closest_near(f->s, x->place.face, x->position, most_steps, true);
+    aqr_closest near;
+    aqr_closest_near(f->s, x->place.face, x->position, most_steps, true, &near);
     x->position = near.position;
     x->place = near.place;
   }
@@ -127,11 +135,13 @@ static aqr_status allocate(aqr_context* c, fit* f)
   f->trace = AQR_NEW(c, double, n);
   f->block = AQR_NEW(c, double, 6 * n);
   f->inverse = AQR_NEW(c, double, 6 * n);
+  f->product = AQR_NEW(c, double, n);
   f->error = AQR_NEW(c, double, n);
   f->back = AQR_NEW0(c, uint8_t, n);
-  f->folds = AQR_NEW(c, uint8_t, m->n_half_edges);
+  f->folds = AQR_NEW(c, shared_flag, n);
   return f->triangles && f->first_corner && f->corners && f->links && f->move && f->residual && f->direction &&
-             f->image && f->before && f->across && f->trace && f->block && f->inverse && f->error && f->back && f->folds
+             f->image && f->before && f->across && f->trace && f->block && f->inverse && f->product && f->error &&
+             f->back && f->folds
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
 }
@@ -153,9 +163,10 @@ static void release(aqr_context* c, fit* f)
   AQR_DROP(c, f->trace, n);
   AQR_DROP(c, f->block, 6 * n);
   AQR_DROP(c, f->inverse, 6 * n);
+  AQR_DROP(c, f->product, n);
   AQR_DROP(c, f->error, n);
   AQR_DROP(c, f->back, n);
-  AQR_DROP(c, f->folds, f->m->n_half_edges);
+  AQR_DROP(c, f->folds, n);
 }
 
 /* Fans from the first corner; quads are cut at the shorter diagonal, as renderers that care do. */
@@ -224,8 +235,6 @@ static void measure(void* data, size_t begin, size_t end)
   {
     triangle* t = &f->triangles[i];
     vec3 p[3];
-    if (f->partly && !f->back[t->v[0]] && !f->back[t->v[1]] && !f->back[t->v[2]])
-      continue;
     for (unsigned k = 0; k < 3; k++)
       p[k] = aqr_pm_point(f->m, t->v[k]);
     vec3 ab = v3_sub(p[1], p[0]), ac = v3_sub(p[2], p[0]), cross = v3_cross(ab, ac), normal = v3_unit(cross);
@@ -237,7 +246,8 @@ static void measure(void* data, size_t begin, size_t end)
       const double* w = barycentric[k];
       sample* x = &t->at[k];
       vec3 q = v3_madd(v3_madd(v3_scale(p[0], w[0]), w[1], p[1]), w[2], p[2]);
-      aqr_closest below = aqr_closest_near(s, x->face, q, most_steps, true);
+      aqr_closest below;
+      aqr_closest_near(s, x->face, q, most_steps, true, &below);
       vec3 n = v3_unit(aqr_face_cross(s, below.place.face));
       error += area * weight[k] * lesser(reach, below.distance2);
       bool use = below.distance2 < reach && v3_dot(n, normal) > least_cosine;
@@ -247,6 +257,30 @@ static void measure(void* data, size_t begin, size_t end)
       x->normal[2] = (float)(a * n.z);
       x->distance = use ? (float)(a * v3_dot(v3_sub(below.position, q), n)) : 0;
       x->face = below.place.face;
+    }
+    t->error = (float)error;
+  }
+}
+
+/* Samples of vertices taken back get their distance from the plane that was found below them. */
+static void shift(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t i = begin; i < end; i++)
+  {
+    triangle* t = &f->triangles[i];
+    if (!f->back[t->v[0]] && !f->back[t->v[1]] && !f->back[t->v[2]])
+      continue;
+    double error = 0;
+    for (unsigned k = 0; k < samples; k++)
+    {
+      sample* x = &t->at[k];
+      vec3 d = v3(0, 0, 0);
+      for (unsigned j = 0; j < 3; j++)
+        if (f->back[t->v[j]])
+          d = v3_madd(d, barycentric[k][j], f->move[t->v[j]]);
+      x->distance += (float)v3_dot(d, v3((double)x->normal[0], (double)x->normal[1], (double)x->normal[2]));
+      error += (double)(x->distance * x->distance);
     }
     t->error = (float)error;
   }
@@ -382,19 +416,23 @@ static void begin_rows(void* data, size_t begin, size_t end)
     if (x->kind != AQR_VERTEX_INTERIOR || !invert(a, inverse))
       memset(inverse, 0, 6 * sizeof *inverse);
     f->direction[v] = times(inverse, f->residual[v]);
-    f->image[v] = v3(0, 0, 0);
+    f->product[v] = v3_dot(f->residual[v], f->direction[v]);
     f->move[v] = v3(0, 0, 0);
   }
 }
 
-/* image = matrix * direction */
+/* image = matrix * direction, and what their dot product is the sum of */
 static void multiply(void* data, size_t begin, size_t end)
 {
   fit* f = data;
   for (size_t v = begin; v < end; v++)
   {
     if (!(f->inverse[6 * v] > 0))
+    {
+      f->image[v] = v3(0, 0, 0);
+      f->product[v] = 0;
       continue;
+    }
     vec3 sum = times(f->block + 6 * v, f->direction[v]);
     const link *last = links_of(f, v + 1), *to = links_of(f, v);
     for (; to < last && to->to != AQR_NONE; to++)
@@ -405,40 +443,60 @@ static void multiply(void* data, size_t begin, size_t end)
       sum = v3_add(sum, times(a, f->direction[to->to]));
     }
     f->image[v] = sum;
+    f->product[v] = v3_dot(f->direction[v], sum);
   }
 }
 
-/* Conjugate gradients with the blocks of single vertices as preconditioner. Sums run in the order of the vertices, so
- * that they do not depend on threads. The matrix is nearly a mass matrix: few steps are enough, and moves this near to
- * the solution's are judged as well as its own. */
+/* Goes along the direction; image = preconditioned residual. */
+static void go_along(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    f->move[v] = v3_madd(f->move[v], f->step, f->direction[v]);
+    f->residual[v] = v3_madd(f->residual[v], -f->step, f->image[v]);
+    f->image[v] = times(f->inverse + 6 * v, f->residual[v]);
+    f->product[v] = v3_dot(f->residual[v], f->image[v]);
+  }
+}
+
+static void turn(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t v = begin; v < end; v++)
+    f->direction[v] = v3_madd(f->image[v], f->step, f->direction[v]);
+}
+
+/* In the order of the vertices, so that it does not depend on threads. */
+static double sum_of_products(const fit* f)
+{
+  double sum = 0;
+  for (size_t v = 0; v < f->m->n_vertices; v++)
+    sum += f->product[v];
+  return sum;
+}
+
+/* Conjugate gradients with the blocks of single vertices as preconditioner. The matrix is nearly a mass matrix: few
+ * steps are enough, and moves this near to the solution's are judged as well as its own. */
 static aqr_status solve(aqr_context* c, fit* f, double at)
 {
   aqr_status status = AQR_OK;
   size_t n = f->m->n_vertices;
-  double rho = 0, first;
   AQR_TRY(aqr_parallel(c, n, gather, f, at, at));
   AQR_TRY(aqr_parallel(c, f->m->n_half_edges / 2, hold_edges, f, at, at));
   AQR_TRY(aqr_parallel(c, n, begin_rows, f, at, at));
-  for (size_t v = 0; v < n; v++)
-    rho += v3_dot(f->residual[v], f->direction[v]);
-  first = rho;
+  double rho = sum_of_products(f), first = rho;
   for (unsigned step = 0; step < solver_steps && rho > least_residual * first; step++)
   {
-    double energy = 0, next = 0;
     AQR_TRY(aqr_parallel(c, n, multiply, f, at, at));
-    for (size_t v = 0; v < n; v++)
-      energy += v3_dot(f->direction[v], f->image[v]);
+    double energy = sum_of_products(f);
     if (!(energy > 0))
       break;
-    for (size_t v = 0; v < n; v++)
-    {
-      f->move[v] = v3_madd(f->move[v], rho / energy, f->direction[v]);
-      f->residual[v] = v3_madd(f->residual[v], -rho / energy, f->image[v]);
-      f->image[v] = times(f->inverse + 6 * v, f->residual[v]);
-      next += v3_dot(f->residual[v], f->image[v]);
-    }
-    for (size_t v = 0; v < n; v++)
-      f->direction[v] = v3_madd(f->image[v], next / rho, f->direction[v]);
+    f->step = rho / energy;
+    AQR_TRY(aqr_parallel(c, n, go_along, f, at, at));
+    double next = sum_of_products(f);
+    f->step = next / rho;
+    AQR_TRY(aqr_parallel(c, n, turn, f, at, at));
     rho = next;
   }
 done:
@@ -468,62 +526,6 @@ static void limit(void* data, size_t begin, size_t end)
   }
 }
 
-/* The sine of the angle at the middle one of three vertices, moved so far. */
-static double sine(const fit* f, const aqr_index* v, double moved)
-{
-  vec3 p[3];
-  for (unsigned i = 0; i < 3; i++)
-    p[i] = v3_madd(aqr_pm_point(f->m, v[i]), moved, f->move[v[i]]);
-  vec3 a = v3_sub(p[2], p[1]), b = v3_sub(p[0], p[1]);
-  double n = v3_norm(a) * v3_norm(b);
-  return n > 0 ? v3_dot(v3_cross(a, b), f->m->vertices[v[1]].normal) / n : -1;
-}
-
-/* Which corners of vertices in question would become too sharp, flat or turned over. */
-static void find_folds(void* data, size_t begin, size_t end)
-{
-  fit* f = data;
-  const aqr_polygon_mesh* m = f->m;
-  for (aqr_index h = (aqr_index)begin; h < end; h++)
-  {
-    f->folds[h] = 0;
-    if (aqr_pm_face(m, h) == AQR_NONE)
-      continue;
-    const aqr_index v[3] = { aqr_pm_from(m, aqr_pm_prev(m, h)), aqr_pm_from(m, h), aqr_pm_to(m, h) };
-    if (!f->back[v[0]] && !f->back[v[1]] && !f->back[v[2]])
-      continue;
-    double after = sine(f, v, 1);
-    f->folds[h] = after <= least_sine && after < sine(f, v, 0);
-  }
-}
-
-/* Halves the moves around corners that fold, in the end to nothing. */
-static aqr_status damp(aqr_context* c, fit* f, double at)
-{
-  const aqr_polygon_mesh* m = f->m;
-  aqr_status status = AQR_OK;
-  memset(f->back, 1, m->n_vertices);
-  for (unsigned round = 0; round < damp_rounds; round++)
-  {
-    AQR_TRY(aqr_parallel(c, m->n_half_edges, find_folds, f, at, at));
-    memset(f->back, 0, m->n_vertices);
-    for (aqr_index h = 0; h < m->n_half_edges; h++)
-      if (f->folds[h])
-        f->back[aqr_pm_from(m, aqr_pm_prev(m, h))] = f->back[aqr_pm_from(m, h)] = f->back[aqr_pm_to(m, h)] = 1;
-    bool folded = false;
-    for (size_t v = 0; v < m->n_vertices; v++)
-      if (f->back[v])
-      {
-        f->move[v] = v3_scale(f->move[v], round + 1 < damp_rounds ? 0.5 : 0);
-        folded = true;
-      }
-    if (!folded)
-      break;
-  }
-done:
-  return status;
-}
-
 static void apply(void* data, size_t begin, size_t end)
 {
   fit* f = data;
@@ -535,6 +537,72 @@ static void apply(void* data, size_t begin, size_t end)
   }
 }
 
+/* The sine of the angle at p between its neighbours. */
+static double sine(vec3 prev, vec3 p, vec3 next, vec3 normal)
+{
+  vec3 a = v3_sub(next, p), b = v3_sub(prev, p);
+  double n = sqrt(v3_norm2(a) * v3_norm2(b));
+  return n > 0 ? v3_dot(v3_cross(a, b), normal) / n : -1;
+}
+
+/* Finds the corners of vertices in question that have become too sharp, flat or turned over. */
+static void find_folds(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  const aqr_polygon_mesh* m = f->m;
+  for (aqr_index h = (aqr_index)begin; h < end; h++)
+  {
+    if (aqr_pm_face(m, h) == AQR_NONE)
+      continue;
+    aqr_index u = aqr_pm_from(m, aqr_pm_prev(m, h)), v = aqr_pm_from(m, h), w = aqr_pm_to(m, h);
+    if (!f->back[u] && !f->back[v] && !f->back[w])
+      continue;
+    vec3 normal = m->vertices[v].normal;
+    double now = sine(aqr_pm_point(m, u), aqr_pm_point(m, v), aqr_pm_point(m, w), normal);
+    if (now > least_sine || !(now < sine(f->before[u], f->before[v], f->before[w], normal)))
+      continue;
+    const aqr_index at[3] = { u, v, w };
+    for (unsigned i = 0; i < 3; i++)
+      atomic_store_explicit(&f->folds[at[i]], 1, memory_order_relaxed);
+  }
+}
+
+static void hold_back(void* data, size_t begin, size_t end)
+{
+  fit* f = data;
+  for (size_t v = begin; v < end; v++)
+  {
+    f->back[v] = atomic_load_explicit(&f->folds[v], memory_order_relaxed);
+    if (!f->back[v])
+      continue;
+    atomic_store_explicit(&f->folds[v], 0, memory_order_relaxed);
+    atomic_store_explicit(&f->folded, 1, memory_order_relaxed);
+    f->move[v] = v3_scale(f->move[v], f->keep);
+    f->m->vertices[v].position = v3_add(f->before[v], f->move[v]);
+  }
+}
+
+/* Halves the moves around corners that fold, in the end to nothing. */
+static aqr_status damp(aqr_context* c, fit* f, double at)
+{
+  const aqr_polygon_mesh* m = f->m;
+  aqr_status status = AQR_OK;
+  memset(f->back, 1, m->n_vertices);
+  for (size_t v = 0; v < m->n_vertices; v++)
+    atomic_init(&f->folds[v], 0);
+  for (unsigned round = 0; round < damp_rounds; round++)
+  {
+    f->keep = round + 1 < damp_rounds ? 0.5 : 0;
+    atomic_init(&f->folded, 0);
+    AQR_TRY(aqr_parallel(c, m->n_half_edges, find_folds, f, at, at));
+    AQR_TRY(aqr_parallel(c, m->n_vertices, hold_back, f, at, at));
+    if (!atomic_load_explicit(&f->folded, memory_order_relaxed))
+      break;
+  }
+done:
+  return status;
+}
+
 /* Finds the place below a vertex that has moved along the surface. */
 static void settle(void* data, size_t begin, size_t end)
 {
@@ -544,7 +612,9 @@ static void settle(void* data, size_t begin, size_t end)
     aqr_vertex* x = &f->m->vertices[v];
     if (x->kind != AQR_VERTEX_INTERIOR)
       continue;
-    x->place = aqr_closest_near(f->s, x->place.face, x->position, most_steps, true).place;
+    aqr_closest below;
+    aqr_closest_near(f->s, x->place.face, x->position, most_steps, true, &below);
+    x->place = below.place;
     vec3 n = v3(0, 0, 0);
     for (unsigned i = 0; i < 3 && f->normals; i++)
       n = v3_madd(n, x->place.bary[i], v3_load(f->normals + 3 * (size_t)f->s->corner[3 * x->place.face + i]));
@@ -580,19 +650,16 @@ static void note_error(void* data, size_t begin, size_t end)
     f->error[v] = error_around(f, v);
 }
 
-/* Measures the error after a move, and, where another round reads it, again where the move had to be taken back. */
+/* Measures the error after a move, and takes back what made it larger. */
 static aqr_status judge(aqr_context* c, fit* f, bool last, double from, double to)
 {
   aqr_status status = AQR_OK;
-  f->partly = false;
   AQR_TRY(aqr_parallel(c, f->m->n_faces, triangulate, f, from, from));
   AQR_TRY(aqr_parallel(c, f->n_triangles, measure, f, from, to));
   list_corners(f);
   AQR_TRY(aqr_parallel(c, f->m->n_vertices, take_back, f, to, to));
-  f->partly = true;
   if (!last)
-    AQR_TRY(aqr_parallel(c, f->n_triangles, measure, f, to, to));
-  f->partly = false;
+    AQR_TRY(aqr_parallel(c, f->n_triangles, shift, f, to, to));
 done:
   return status;
 }
@@ -616,8 +683,8 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
     AQR_TRY(aqr_parallel(c, n, note_error, &f, at, at));
     AQR_TRY(solve(c, &f, at));
     AQR_TRY(aqr_parallel(c, n, limit, &f, at, at));
-    AQR_TRY(damp(c, &f, at));
     AQR_TRY(aqr_parallel(c, n, apply, &f, at, at));
+    AQR_TRY(damp(c, &f, at));
     AQR_TRY(judge(c, &f, round + 1 == rounds, at, next));
   }
   AQR_TRY(aqr_parallel(c, n, settle, &f, 0.9, 1));

@@ -41,7 +41,8 @@ static void link(aqr_polygon_mesh* m, aqr_index h, aqr_index next, aqr_index fro
 static void look(const job* j, aqr_index from, vec3 p, aqr_closest* best)
 {
   const aqr_place* at = &j->m->vertices[from].place;
-  aqr_closest near = aqr_closest_near(j->s, at->face, p, most_steps, true);
+  aqr_closest near;
+  aqr_closest_near(j->s, at->face, p, most_steps, true, &near);
   if (near.distance2 < best->distance2)
     *best = near;
 }

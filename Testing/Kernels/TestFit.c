@@ -16,7 +16,8 @@ static void set_places(const aqr_surface* s, aqr_polygon_mesh* m)
     aqr_closest best = { .distance2 = INFINITY };
     for (aqr_index f = 0; f < s->n_faces; f++)
     {
-      aqr_closest x = aqr_closest_near(s, f, m->vertices[v].position, 0, false);
+      aqr_closest x;
+      aqr_closest_near(s, f, m->vertices[v].position, 0, false, &x);
       if (x.distance2 < best.distance2)
         best = x;
     }
@@ -196,7 +197,8 @@ AQR_TEST(the_closest_point_stays_on_its_sheet)
     if (a.z > 0 || b.z > 0 || d.z > 0 || a.x > 0.6 || b.x > 0.6)
       continue;
     vec3 p = v3(a.x + 0.1, fmin(1, a.y + 0.07), 0.009); /* nearer to the other sheet */
-    aqr_closest r = aqr_closest_near(&s, f, p, 1000, false);
+    aqr_closest r;
+    aqr_closest_near(&s, f, p, 1000, false, &r);
     CHECK(r.position.z == 0);
     CHECK(fabs(r.position.x - p.x) < 1e-12 && fabs(r.position.y - p.y) < 1e-12);
     vec3 q = aqr_place_position(&s, &r.place);
