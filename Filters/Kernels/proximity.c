@@ -31,6 +31,14 @@ static double distance2_to_segment(vec3 p, vec3 a, vec3 b)
   return v3_norm2(v3_madd(ap, -t, ab));
 }
 
+/* Whether the inside of an edge whose ends are not comes within the radius of the probe. */
+static bool passes_by(const aqr_probe* probe, vec3 a, vec3 b)
+{
+  vec3 ab = v3_sub(b, a), ap = v3_sub(probe->p, a);
+  double n = v3_norm2(ab), along = v3_dot(ab, ap);
+  return along > 0 && along < n && (v3_norm2(ap) - probe->radius * probe->radius) * n < along * along;
+}
+
 /* Room for the cell's next two faces. */
 static bool reserve(aqr_context* c, aqr_pcell* cell)
 {
@@ -43,7 +51,7 @@ static void cross(aqr_pcell* cell, const aqr_probe* probe, aqr_index h, vec3 fro
   aqr_index twin = aqr_twin(cell->surface, h);
   if (twin == AQR_NONE || cell->stamp[aqr_face_of(twin)] == cell->query)
     return;
-  if (!from_in && !to_in && distance2_to_segment(probe->p, from, to) >= probe->radius * probe->radius)
+  if (!from_in && !to_in && !passes_by(probe, from, to))
     return;
   cell->stamp[aqr_face_of(twin)] = cell->query;
   cell->entries[cell->n_entries++] = (aqr_entry){ twin, to_in, from_in };

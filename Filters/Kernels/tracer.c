@@ -42,52 +42,55 @@ static void lay_out(const aqr_surface* s, aqr_index f, aqr_complex q[3])
   aqr_lay_flat(aqr_point(s, corner[0]), aqr_point(s, corner[1]), aqr_point(s, corner[2]), q);
 }
 
-static void judge(const aqr_tracer* t, aqr_chart* chart)
+/* Where the face's own +x axis, along its half-edge 0, lies in the chart. */
+static aqr_complex turn_of(const aqr_chart* chart)
 {
-  chart->coherent = false;
+  return cx_unit(cx_sub(chart->q[1], chart->q[0]));
+}
+
+/* Whether the crosses at the corners of the face agree well enough to be blended. */
+static bool is_coherent(const aqr_tracer* t)
+{
   if (!t->flat)
-    return;
-  const aqr_rotor* u = t->flat + 3 * (size_t)chart->face;
-  chart->coherent = u[0].x * u[1].x + u[0].y * u[1].y > 0 && u[1].x * u[2].x + u[1].y * u[2].y > 0 &&
-                    u[2].x * u[0].x + u[2].y * u[0].y > 0;
+    return false;
+  const aqr_rotor* u = t->flat + 3 * (size_t)t->chart.face;
+  return u[0].x * u[1].x + u[0].y * u[1].y > 0 && u[1].x * u[2].x + u[1].y * u[2].y > 0 &&
+         u[2].x * u[0].x + u[2].y * u[0].y > 0;
 }
 
 /* Lays face f, whose own layout is q, so that its corner `k` comes to `at` and its +x axis to the unit number `turn`.
  */
-static void place(const aqr_tracer* t, aqr_index f, const aqr_complex q[3], unsigned k, aqr_complex at,
-  aqr_complex turn, aqr_chart* chart)
+static void place(aqr_index f, const aqr_complex q[3], unsigned k, aqr_complex at, aqr_complex turn, aqr_chart* chart)
 {
   chart->face = f;
-  chart->turn = turn;
   for (unsigned i = 0; i < 3; i++)
   {
     aqr_complex d = cx_mul(turn, cx_sub(q[i], q[k]));
     chart->q[i] = cx(at.x + d.x, at.y + d.y);
   }
-  judge(t, chart);
 }
 
 void aqr_chart_lay(const aqr_tracer* t, aqr_index f, aqr_chart* chart)
 {
   aqr_complex q[3];
   lay_out(t->surface, f, q);
-  place(t, f, q, 0, cx(0, 0), cx(1, 0), chart);
+  place(f, q, 0, cx(0, 0), cx(1, 0), chart);
 }
 
 void aqr_chart_unfold(const aqr_tracer* t, const aqr_chart* from, unsigned k, aqr_chart* to)
 {
-  aqr_index twin = aqr_any_twin(t->surface, 3 * from->face + k);
+  const aqr_surface* s = t->surface;
+  aqr_index twin = aqr_any_twin(s, 3 * from->face + k);
   unsigned i = twin % 3, j = (i + 1) % 3, apex = (i + 2) % 3;
-  aqr_complex a = from->q[k], b = from->q[(k + 1) % 3], q[3];
+  aqr_complex a = from->q[k], b = from->q[(k + 1) % 3], e = cx_unit(cx_sub(a, b)); /* the twin runs the other way */
   to->face = aqr_face_of(twin);
-  lay_out(t->surface, to->face, q);
-  /* the twin runs the other way */
-  to->turn = cx_unit(cx_mul(cx_sub(a, b), cx_conj(cx_sub(q[j], q[i]))));
-  aqr_complex d = cx_mul(to->turn, cx_sub(q[apex], q[i]));
+  const aqr_index* corner = s->corner + 3 * (size_t)to->face;
+  vec3 p = aqr_point(s, corner[i]), u = v3_sub(aqr_point(s, corner[j]), p), v = v3_sub(aqr_point(s, corner[apex]), p);
+  double length = v3_norm(u), one_over = length > 0 ? 1 / length : 0;
+  double along = v3_dot(u, v) * one_over, height = v3_norm(v3_cross(u, v)) * one_over;
   to->q[i] = b;
   to->q[j] = a;
-  to->q[apex] = cx(b.x + d.x, b.y + d.y);
-  judge(t, to);
+  to->q[apex] = cx(b.x + along * e.x - height * e.y, b.y + along * e.y + height * e.x);
 }
 
 /* The plane's axes in space. */
@@ -97,7 +100,7 @@ static void axes(const aqr_tracer* t, vec3* ex, vec3* ey)
   const aqr_index* corner = s->corner + 3 * (size_t)t->chart.face;
   vec3 a = aqr_point(s, corner[0]), ab = v3_sub(aqr_point(s, corner[1]), a), ac = v3_sub(aqr_point(s, corner[2]), a);
   vec3 x = v3_unit(ab), y = v3_cross(v3_unit(v3_cross(ab, ac)), x);
-  aqr_complex turn = t->chart.turn;
+  aqr_complex turn = turn_of(&t->chart);
   *ex = v3_madd(v3_scale(x, turn.x), -turn.y, y);
   *ey = v3_madd(v3_scale(x, turn.y), turn.x, y);
 }
@@ -184,16 +187,16 @@ static aqr_complex nearest_branch(const aqr_tracer* t, aqr_complex d)
   aqr_complex u = cx(0, 0);
   for (unsigned i = 0; i < 3; i++)
     u = cx_madd(u, sum > 0 ? w[i] : 1, cx_wide(cross[i]));
-  aqr_complex off = cx_unit(cx_mul(u, cx_conj(cx_fourth(cx_mul(d, cx_conj(chart->turn))))));
+  aqr_complex off = cx_unit(cx_mul(u, cx_conj(cx_fourth(cx_mul(d, cx_conj(turn_of(chart)))))));
   return cx_unit(cx_mul(d, half_angle(half_angle(off))));
 }
 
 bool aqr_tracer_align(aqr_tracer* t)
 {
-  t->isotropic = !t->chart.coherent;
-  if (t->chart.coherent)
+  t->isotropic = !is_coherent(t);
+  if (!t->isotropic)
     t->d = nearest_branch(t, t->d);
-  return t->chart.coherent;
+  return !t->isotropic;
 }
 
 /* The total angle around an interior vertex from half-edge `from`, and the angle at which each
@@ -293,7 +296,7 @@ static aqr_status pass_vertex(
   unsigned from = exit % 3;
   lay_out(s, aqr_face_of(exit), q);
   aqr_complex out = cx_mul(cx_unit(cx_sub(q[(from + 1) % 3], q[from])), cx(cos(exit_angle), sin(exit_angle)));
-  place(t, aqr_face_of(exit), q, from, at, cx_mul(d, cx_conj(out)), &t->chart);
+  place(aqr_face_of(exit), q, from, at, cx_mul(d, cx_conj(out)), &t->chart);
   t->x = at;
   *vertex = from;
   *result = AQR_INSIDE;
@@ -448,7 +451,7 @@ static aqr_status predict(aqr_context* c, aqr_tracer* t, aqr_complex d, double l
   aqr_complex x = t->x;
   aqr_advance result;
   aqr_status status = move(c, t, d, length, false, &result);
-  *direction = t->chart.coherent ? nearest_branch(t, d) : d;
+  *direction = is_coherent(t) ? nearest_branch(t, d) : d;
   t->chart = chart;
   t->x = x;
   return status;
@@ -482,7 +485,7 @@ aqr_status aqr_tracer_step(
   t->d = mean;
   AQR_TRY(move(c, t, mean, h, true, result));
   /* arrive with the direction the field has there, so that stops and branches are judged by it */
-  if (t->chart.coherent)
+  if (is_coherent(t))
     t->d = nearest_branch(t, k4);
 done:
   return status;

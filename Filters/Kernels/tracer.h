@@ -13,8 +13,6 @@ typedef struct aqr_chart
 {
   aqr_index face;
   aqr_complex q[3]; /* its corners */
-  aqr_complex turn; /* where the face's own +x axis, along its half-edge 0, lies */
-  bool coherent;    /* the corners' crosses agree well enough to be blended */
 } aqr_chart;
 
 typedef enum aqr_advance
