@@ -204,9 +204,9 @@ static aqr_status connect(aqr_context* c, aqr_polygon_mesh* m, aqr_index h0, aqr
   return status != AQR_OK || direct ? status : split_aside(c, m, aqr_pm_prev(m, h0));
 }
 
-/* The shortest connection between the corners after i and before j and those after j and before i. */
-static bool choose_connection(
-  const aqr_polygon_mesh* m, const walker* w, size_t i, size_t j, aqr_index* h0, aqr_index* h1)
+/* The shortest connection between the corners after i and before j and those after j and before i: corners *from
+ * and *to. */
+static bool choose_connection(const aqr_polygon_mesh* m, const walker* w, size_t i, size_t j, size_t* from, size_t* to)
 {
   size_t inner = j - i - 1, outer = w->n - inner - 2;
   size_t step_in = inner / arc_candidates + 1, step_out = outer / arc_candidates + 1;
@@ -218,8 +218,8 @@ static bool choose_connection(
     for (size_t a = 0; a < inner; a += whole ? 1 : step_in)
       for (size_t b = 0; b < outer; b += whole ? 1 : step_out)
       {
-        aqr_index ha = w->corner[i + 1 + a], hb = w->corner[(j + 1 + b) % w->n];
-        aqr_index u = aqr_pm_from(m, ha), v = aqr_pm_from(m, hb);
+        size_t in = i + 1 + a, out = (j + 1 + b) % w->n;
+        aqr_index u = aqr_pm_from(m, w->corner[in]), v = aqr_pm_from(m, w->corner[out]);
         double d = v3_norm2(v3_sub(aqr_pm_point(m, u), aqr_pm_point(m, v)));
         if (u == v)
           continue;
@@ -229,12 +229,31 @@ static bool choose_connection(
         {
           found = true;
           best = d;
-          *h0 = ha;
-          *h1 = hb;
+          *from = in;
+          *to = out;
         }
       }
   }
   return found;
+}
+
+/* What is left of the face at hand once its corners `from` and `to` are joined: those from the first to the second, and
+ * the new edge back. Walking around the face once more for each of its repeats would take long where it is large. */
+static aqr_status keep_rest(aqr_context* c, const aqr_polygon_mesh* m, walker* w, size_t from, size_t to)
+{
+  size_t wrapped = to < from ? to : 0;
+  if (!AQR_RESERVE(c, w->corner, w->capacity, w->n + wrapped))
+    return AQR_OUT_OF_MEMORY;
+  memcpy(w->corner + w->n, w->corner, wrapped * sizeof *w->corner);
+  w->n = (to < from ? w->n + to : to) - from;
+  memmove(w->corner, w->corner + from, w->n * sizeof *w->corner);
+  for (aqr_index h = aqr_pm_next(m, w->corner[w->n - 1]); h != w->corner[0]; h = aqr_pm_next(m, h))
+  {
+    if (!AQR_RESERVE(c, w->corner, w->capacity, w->n + 1))
+      return AQR_OUT_OF_MEMORY;
+    w->corner[w->n++] = h;
+  }
+  return AQR_OK;
 }
 
 /* Each split lowers the sum over all faces of (corners - different vertices) by at least one, because the two corners
@@ -249,22 +268,30 @@ static aqr_status part_repeats(aqr_context* c, aqr_polygon_mesh* m)
   size_t known = 0;
   for (aqr_index f = 0; f < m->n_faces; f++)
   {
-    while (m->faces[f] != AQR_NONE)
+    if (m->faces[f] == AQR_NONE)
+      continue;
+    AQR_TRY(collect(c, m, f, &w));
+    for (;;)
     {
       if (stamp % 4096 == 0)
         AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
-      size_t i, j;
-      aqr_index h0, h1;
+      size_t i, j, from, to;
       AQR_REQUIRE(AQR_RESERVE(c, w.last, w.last_capacity, m->n_vertices) &&
                     AQR_RESERVE(c, w.mark, w.mark_capacity, m->n_vertices),
         AQR_OUT_OF_MEMORY);
       for (; known < m->n_vertices; known++)
         w.mark[known] = 0;
-      AQR_TRY(collect(c, m, f, &w));
       if (!find_repeat(m, &w, ++stamp, &i, &j))
         break;
-      AQR_REQUIRE(choose_connection(m, &w, i, j, &h0, &h1), AQR_INTERNAL);
-      AQR_TRY(connect(c, m, h0, h1));
+      AQR_REQUIRE(choose_connection(m, &w, i, j, &from, &to), AQR_INTERNAL);
+      if ((to + w.n - from) % w.n < w.n / 2) /* the larger part stays at hand, and only the other gets a new number */
+      {
+        size_t swap = from;
+        from = to;
+        to = swap;
+      }
+      AQR_TRY(connect(c, m, w.corner[from], w.corner[to]));
+      AQR_TRY(keep_rest(c, m, &w, from, to));
     }
   }
 done:
