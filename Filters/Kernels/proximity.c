@@ -67,7 +67,6 @@ static aqr_status begin(aqr_context* c, aqr_pcell* cell, const aqr_probe* probe)
 {
   const aqr_surface* s = cell->surface;
   cell->n_entries = 0;
-  cell->queries++;
   if (++cell->query == 0) /* the counter came round: no stamp of an earlier turn may be taken for a new one */
   {
     memset(cell->stamp, 0, s->n_faces * sizeof *cell->stamp);
@@ -129,17 +128,25 @@ static void look(const aqr_lines* lines, aqr_index face, const aqr_probe* probe,
   }
 }
 
+/* Whether what is found will do, so that the cell need not grow. */
+static bool ends(const aqr_probe* probe, const aqr_near* found)
+{
+  return probe->any && found->line != AQR_NONE;
+}
+
 aqr_status aqr_pcell_nearest(
   aqr_context* c, aqr_pcell* cell, const aqr_lines* lines, const aqr_probe* probe, aqr_near* found)
 {
   double nearest2 = probe->radius * probe->radius;
   *found = (aqr_near){ AQR_NONE, AQR_NONE, 0 };
+  cell->queries++;
   look(lines, probe->face, probe, &nearest2, found);
-  aqr_status status = begin(c, cell, probe);
-  for (size_t i = 0; status == AQR_OK && i < cell->n_entries && !(probe->any && found->line != AQR_NONE); i++)
+  aqr_status status = ends(probe, found) ? AQR_OK : begin(c, cell, probe);
+  for (size_t i = 0; status == AQR_OK && !ends(probe, found) && i < cell->n_entries; i++)
   {
     look(lines, aqr_face_of(cell->entries[i].h), probe, &nearest2, found);
-    status = extend(c, cell, probe, cell->entries[i]);
+    if (!ends(probe, found))
+      status = extend(c, cell, probe, cell->entries[i]);
   }
   found->distance = sqrt(nearest2);
   return status;

@@ -32,6 +32,7 @@ static const double least_turning_length = 6; /* the same for a line that meets 
 static const double damping = 0.8;    /* of the step to the number of points asked for: what is overshot is lost */
 static const double enough = 0.99;    /* of that number */
 static const double most_finer = 1.5; /* than the sizing: beyond, its bounds would no longer hold */
+static const double join_distance = 0.1; /* of the spacing: ends as near on either side of a seam are one crossing */
 static const double node_distance =
   0.35; /* of the spacing: a line does not go on over a seam nearer to another's end */
 
@@ -248,6 +249,59 @@ static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
   return (double)samples[line->count - 1].sigma > (turns ? least_turning_length : least_length);
 }
 
+/* An end of a line. */
+typedef struct line_end
+{
+  aqr_index line, sample; /* AQR_NONE: there is none */
+  unsigned end;
+} line_end;
+
+/* The end on the other side of a seam that a grown line's end there is joined to: the nearest one that nothing goes on
+ * from, unless it is far away. Around a bar the last line of a ring comes from behind to where the first one began. */
+static line_end opposite_end(const sampler* m, const aqr_sample* at, vec3 d)
+{
+  const aqr_surface* s = m->s;
+  const aqr_lines* l = m->lines;
+  line_end found = { AQR_NONE, AQR_NONE, 0 };
+  aqr_index other = aqr_any_twin(s, aqr_sample_half_edge(s, at, at->face));
+  double along, across;
+  aqr_sizing_at(s, m->field, m->sizing, at->face, v3_unit(d), &along, &across);
+  double nearest = join_distance * across;
+  for (aqr_index k = l->head[aqr_face_of(other)]; k != AQR_NONE; k = l->segments[k].next)
+  {
+    const aqr_line* line = &l->lines[l->segments[k].line];
+    for (unsigned i = 0; i < 2; i++)
+    {
+      size_t end = line->first + (i ? line->count - 1 : 0);
+      const aqr_sample* a = &l->samples[end];
+      bool is_here = l->segments[k].sample + i == end && a->edge == at->edge && line->ends[i] == AQR_END_FEATURE;
+      double distance = v3_norm(v3_sub(a->p, at->p));
+      if (!is_here || line->partner[i] != AQR_NONE || !(distance < nearest))
+        continue;
+      nearest = distance;
+      found = (line_end){ l->segments[k].line, (aqr_index)end, i };
+    }
+  }
+  return found;
+}
+
+/* Joins the free ends of the grown line, the next one to be added, to ends that they meet. */
+static void join_ends(sampler* m)
+{
+  aqr_line* line = &m->grower.line;
+  const aqr_sample* a = m->grower.samples;
+  for (unsigned i = 0; i < 2; i++)
+  {
+    size_t end = i ? line->count - 1 : 0, before = i ? end - 1 : 1;
+    if (line->ends[i] != AQR_END_FEATURE || line->partner[i] != AQR_NONE)
+      continue;
+    line_end met = opposite_end(m, &a[end], v3_sub(a[end].p, a[before].p));
+    line->partner[i] = met.sample;
+    if (met.line != AQR_NONE)
+      m->lines->lines[met.line].partner[met.end] = (aqr_index)(m->lines->n_samples + end);
+  }
+}
+
 /* Commits the grower's line; *id is AQR_NONE where it was not worth keeping. */
 static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
 {
@@ -263,13 +317,14 @@ static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
   }
   *id = (aqr_index)m->lines->n_lines;
   g->line.partner[0] = partner;
+  join_ends(m);
   aqr_status status = aqr_lines_add(m->c, m->lines, m->s, &g->line, g->samples);
   if (status == AQR_OK)
     status = add_parent(m);
   if (status == AQR_OK)
     status = mark_crossings(m, *id);
   for (unsigned i = 0; i < 2 && status == AQR_OK; i++)
-    if (on_border(g->line.ends[i]) && !(i == 0 && partner != AQR_NONE))
+    if (on_border(g->line.ends[i]) && g->line.partner[i] == AQR_NONE)
       status = land(m, &g->samples[i ? g->line.count - 1 : 0]);
   return status;
 }

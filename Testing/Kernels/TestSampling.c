@@ -45,6 +45,37 @@ static census lines_on(shape m, aqr_options o)
   return k;
 }
 
+static vec3 cube_to_bar(vec3 p)
+{
+  return v3(4 * p.x, 0.06 * p.y, 0.05 * p.z);
+}
+
+/* The closest two points of a result. */
+static double least_distance(const aqr_mesh* m)
+{
+  double least = INFINITY;
+  for (size_t i = 0; i < m->number_of_points; i++)
+    for (size_t j = 0; j < i; j++)
+      least = fmin(least, v3_norm(v3_sub(v3_load(m->points + 3 * i), v3_load(m->points + 3 * j))));
+  return least;
+}
+
+AQR_TEST(lines_around_a_bar_do_not_end_in_two_vertices_at_one_place)
+{
+  for (int64_t points = 60; points <= 160; points += 20)
+  {
+    shape m = shape_cube(16, 0, 1);
+    aqr_options o = options_for_points(points);
+    shape_map(&m, cube_to_bar);
+    aqr_remesher* r = remesh(&m, &o);
+    double least = least_distance(aqr_remesher_mesh(r));
+    printf("%d points asked: the closest two are %g apart\n", (int)points, least);
+    CHECK(least > 1e-3);
+    aqr_remesher_free(r);
+    shape_free(&m);
+  }
+}
+
 AQR_TEST(every_type_of_line_and_end_is_found_where_it_belongs)
 {
   aqr_options smooth = options_for_points(300); /* where the shape has no creases but those of its triangles */
