@@ -32,9 +32,7 @@ static bool gather(
     {
       if (g->n == AQR_POLYGON_CORNERS)
         return false;
-      g->p[g->n] = w->position;
-      g->normal[g->n] = w->normal;
-      g->vertex[g->n++] = v;
+      aqr_polygon_add(g, v, w);
     }
     h = aqr_pm_next(m, h);
   } while (h != m->faces[f]);
@@ -173,11 +171,8 @@ done:
 
 static void add_corner(const aqr_polygon_mesh* m, aqr_index h, aqr_polygon* g, aqr_index* corner)
 {
-  aqr_index v = aqr_pm_from(m, h);
-  g->p[g->n] = m->vertices[v].position;
-  g->normal[g->n] = m->vertices[v].normal;
-  g->vertex[g->n] = v;
-  corner[g->n++] = h;
+  corner[g->n] = h;
+  aqr_polygon_add(g, aqr_pm_from(m, h), &m->vertices[aqr_pm_from(m, h)]);
 }
 
 /* Whether a vertex at a corner of the polygon keeps at least three edges (two on borders) when an edge at it goes and
@@ -254,14 +249,28 @@ static aqr_status partition_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index 
   return p.cost < INFINITY ? draw(c, m, corner, &p) : AQR_OK;
 }
 
-/* How far the two angles that a diagonal to `to` makes at a corner are from right angles; infinite outside the face. */
-static double diagonal_angles(const aqr_polygon_mesh* m, aqr_index h, aqr_index to)
+/* The vector area of a face. */
+static vec3 area_of(const aqr_polygon_mesh* m, aqr_index f)
+{
+  vec3 p = aqr_pm_point(m, aqr_pm_from(m, m->faces[f])), sum = v3(0, 0, 0);
+  for (aqr_index h = aqr_pm_next(m, m->faces[f]); h != m->faces[f]; h = aqr_pm_next(m, h))
+  {
+    vec3 a = aqr_pm_point(m, aqr_pm_from(m, h)), b = aqr_pm_point(m, aqr_pm_to(m, h));
+    sum = v3_add(sum, v3_cross(v3_sub(a, p), v3_sub(b, p)));
+  }
+  return sum;
+}
+
+/* How far the two angles that a diagonal to `to` makes at a corner are from right angles; infinite outside the face,
+ * whose normal is the one at vertices of creases. */
+static double diagonal_angles(const aqr_polygon_mesh* m, aqr_index h, aqr_index to, vec3 normal)
 {
   const aqr_vertex* v = &m->vertices[aqr_pm_from(m, h)];
+  normal = v->kind >= AQR_VERTEX_FEATURE ? normal : v->normal;
   vec3 prev = aqr_pm_point(m, aqr_pm_from(m, aqr_pm_prev(m, h))), next = aqr_pm_point(m, aqr_pm_to(m, h));
   vec3 end = aqr_pm_point(m, to);
-  double whole = aqr_corner_angle(prev, v->position, next, v->normal);
-  double part = aqr_corner_angle(end, v->position, next, v->normal);
+  double whole = aqr_corner_angle(prev, v->position, next, normal);
+  double part = aqr_corner_angle(end, v->position, next, normal);
   const double right = 1.57079632679489662;
   return part < whole ? fmin(right, fabs(part - right)) + fmin(right, fabs(whole - part - right)) : INFINITY;
 }
@@ -272,6 +281,7 @@ static aqr_status split_large(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, 
   aqr_index h = m->faces[f], best[2] = { AQR_NONE, AQR_NONE };
   double least = INFINITY, perimeter = 0;
   size_t stride = n / split_candidates + 1;
+  vec3 normal = v3_unit_or(area_of(m, f), m->vertices[aqr_pm_from(m, h)].normal);
   for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))
     perimeter += edge_length(m, h);
   for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))
@@ -285,7 +295,7 @@ static aqr_status split_large(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, 
       if (i + j >= n || j % stride)
         continue;
       aqr_index u = aqr_pm_from(m, h), v = aqr_pm_from(m, k);
-      double angles = diagonal_angles(m, h, v) + diagonal_angles(m, k, u);
+      double angles = diagonal_angles(m, h, v, normal) + diagonal_angles(m, k, u, normal);
       double cost = (angles < INFINITY ? angles : 100) +
                     8 * v3_norm(v3_sub(aqr_pm_point(m, u), aqr_pm_point(m, v))) / (perimeter > 0 ? perimeter : 1);
       if (cost < least && aqr_pm_find(m, u, v) == AQR_NONE)
@@ -323,6 +333,19 @@ done:
   return status;
 }
 
+/* A vertex between two lines that ended there, which no cut has come to, joins their edges. */
+static bool join_loose(aqr_context* c, aqr_polygon_mesh* m)
+{
+  for (aqr_index v = 0; v < m->n_vertices; v++)
+  {
+    if (v % 65536 == 0 && !aqr_step(c, 0.85))
+      return false;
+    if (m->vertices[v].out != AQR_NONE && aqr_can_join(m, v))
+      aqr_pm_join_edges(m, v);
+  }
+  return true;
+}
+
 aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces_options* options)
 {
   aqr_status status = AQR_OK;
@@ -338,6 +361,7 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
     AQR_TRY(redraw_all(c, m, largest));
     AQR_TRY(partition_all(c, m, options));
   }
+  AQR_REQUIRE(join_loose(c, m), AQR_CANCELLED);
   AQR_REQUIRE(aqr_step(c, 0.9), AQR_CANCELLED);
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(aqr_step(c, 0.95), AQR_CANCELLED);

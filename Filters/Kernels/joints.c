@@ -39,19 +39,7 @@ static bool has_size(const aqr_polygon_mesh* m, aqr_index h, unsigned n)
 static void add(const aqr_polygon_mesh* m, aqr_index h, unsigned count, aqr_polygon* g)
 {
   for (unsigned i = 0; i < count; i++, h = aqr_pm_next(m, h))
-  {
-    const aqr_vertex* v = &m->vertices[aqr_pm_from(m, h)];
-    g->p[g->n] = v->position;
-    g->normal[g->n] = v->normal;
-    g->vertex[g->n++] = aqr_pm_from(m, h);
-  }
-}
-
-static void add_vertex(const aqr_vertex* v, aqr_polygon* g)
-{
-  g->p[g->n] = v->position;
-  g->normal[g->n] = v->normal;
-  g->vertex[g->n++] = AQR_NONE;
+    aqr_polygon_add(g, aqr_pm_from(m, h), &m->vertices[aqr_pm_from(m, h)]);
 }
 
 static double cost_of_face(const aqr_polygon_mesh* m, aqr_index h, unsigned n)
@@ -84,8 +72,8 @@ static double cut_pentagon(const aqr_polygon_mesh* m, aqr_index h, const aqr_ver
 {
   aqr_polygon a = { .n = 0 }, b = { .n = 0 };
   add(m, h, 3, &a);
-  add_vertex(w, &a);
-  add_vertex(w, &b);
+  aqr_polygon_add(&a, AQR_NONE, w);
+  aqr_polygon_add(&b, AQR_NONE, w);
   add(m, after(m, h, 3), 2, &b);
   add(m, h, 1, &b);
   return aqr_polygon_cost(&a) + aqr_polygon_cost(&b);
@@ -95,13 +83,13 @@ static double cut_pentagon(const aqr_polygon_mesh* m, aqr_index h, const aqr_ver
 static double cut_quad(const aqr_polygon_mesh* m, aqr_index h, const aqr_vertex* v, const aqr_vertex* w)
 {
   aqr_polygon a = { .n = 0 }, b = { .n = 0 };
-  add_vertex(v, &a);
+  aqr_polygon_add(&a, AQR_NONE, v);
   add(m, after(m, h, 1), 2, &a);
-  add_vertex(w, &a);
-  add_vertex(w, &b);
+  aqr_polygon_add(&a, AQR_NONE, w);
+  aqr_polygon_add(&b, AQR_NONE, w);
   add(m, after(m, h, 3), 1, &b);
   add(m, h, 1, &b);
-  add_vertex(v, &b);
+  aqr_polygon_add(&b, AQR_NONE, v);
   return aqr_polygon_cost(&a) + aqr_polygon_cost(&b);
 }
 
@@ -112,16 +100,16 @@ static double end_in(const aqr_polygon_mesh* m, aqr_index h, const aqr_vertex* v
   aqr_polygon a = { .n = 0 }, b = { .n = 0 };
   if (has_size(m, h, 3))
   {
-    add_vertex(v, &a);
+    aqr_polygon_add(&a, AQR_NONE, v);
     add(m, after(m, h, 1), 3, &a);
     return aqr_polygon_cost(&a) - cost_of_face(m, h, 3);
   }
   if (!has_size(m, h, 5))
     return INFINITY;
-  add_vertex(v, &a);
+  aqr_polygon_add(&a, AQR_NONE, v);
   add(m, after(m, h, 1), 3, &a);
   add(m, after(m, h, 3), 3, &b);
-  add_vertex(v, &b);
+  aqr_polygon_add(&b, AQR_NONE, v);
   return aqr_polygon_cost(&a) + aqr_polygon_cost(&b) - cost_of_face(m, h, 5);
 }
 
@@ -182,20 +170,13 @@ done:
 /* The straightest corner of a pentagon. */
 static aqr_index joint_of(const aqr_polygon_mesh* m, aqr_index h)
 {
-  aqr_index best = h;
-  double widest = 0;
-  for (unsigned i = 0; i < 5; i++, h = aqr_pm_next(m, h))
-  {
-    const aqr_vertex* v = &m->vertices[aqr_pm_from(m, h)];
-    double angle = aqr_corner_angle(
-      aqr_pm_point(m, aqr_pm_from(m, aqr_pm_prev(m, h))), v->position, aqr_pm_point(m, aqr_pm_to(m, h)), v->normal);
-    if (angle > widest)
-    {
-      widest = angle;
-      best = h;
-    }
-  }
-  return best;
+  aqr_polygon g = { .n = 0 };
+  unsigned best = 0;
+  add(m, h, 5, &g);
+  for (unsigned i = 1; i < 5; i++)
+    if (aqr_polygon_angle(&g, i) > aqr_polygon_angle(&g, best))
+      best = i;
+  return after(m, h, best);
 }
 
 aqr_status aqr_joints_extend(aqr_context* c, aqr_polygon_mesh* m, unsigned reach)

@@ -7,13 +7,36 @@
 
 static const double straight = PI * 19 / 18; /* a T-joint on a curved line bends by a few degrees */
 static const double corner_price = 1.1; /* of every corner beyond the fourth, and of the missing one of a triangle */
-static const double angle_price = 0.5;  /* of a corner that is off by a right angle */
+static const double angle_price = 0.9;  /* of a corner that is off by a right angle */
 static const double concave_price = 5;
 
 double aqr_corner_angle(vec3 prev, vec3 p, vec3 next, vec3 normal)
 {
   vec3 in = v3_sub(p, prev), out = v3_sub(next, p);
   return PI - atan2(v3_dot(normal, v3_cross(in, out)), v3_dot(v3_reject(in, normal), v3_reject(out, normal)));
+}
+
+void aqr_polygon_add(aqr_polygon* g, aqr_index index, const aqr_vertex* v)
+{
+  unsigned i = g->n++;
+  g->p[i] = v->position;
+  g->normal[i] = v->normal;
+  g->sharp[i] = v->kind >= AQR_VERTEX_FEATURE;
+  g->vertex[i] = index;
+  vec3 area = i > 1 ? v3_cross(v3_sub(g->p[i - 1], g->p[0]), v3_sub(g->p[i], g->p[0])) : v3(0, 0, 0);
+  g->area = i > 1 ? v3_add(g->area, area) : area;
+}
+
+/* The angle of corner b between corners a and c. */
+static double angle_at(const aqr_polygon* g, unsigned a, unsigned b, unsigned c)
+{
+  vec3 normal = g->sharp[b] ? v3_unit_or(g->area, g->normal[b]) : g->normal[b];
+  return aqr_corner_angle(g->p[a], g->p[b], g->p[c], normal);
+}
+
+double aqr_polygon_angle(const aqr_polygon* g, unsigned i)
+{
+  return angle_at(g, i ? i - 1 : g->n - 1, i, i + 1 < g->n ? i + 1 : 0);
 }
 
 /* Cost of n corner angles: the four smallest are meant to be right, the others straight. */
@@ -45,7 +68,7 @@ static double cost_of(const aqr_polygon* g, const unsigned char* corner, unsigne
   for (unsigned i = 0; i < n; i++)
   {
     unsigned a = corner[i ? i - 1 : n - 1], b = corner[i], c = corner[i + 1 < n ? i + 1 : 0];
-    angle[i] = aqr_corner_angle(g->p[a], g->p[b], g->p[c], g->normal[b]);
+    angle[i] = angle_at(g, a, b, c);
   }
   return angles_cost(angle, n);
 }
@@ -61,12 +84,8 @@ double aqr_polygon_cost(const aqr_polygon* g)
 bool aqr_polygon_is_concave(const aqr_polygon* g)
 {
   for (unsigned i = 0; i < g->n; i++)
-  {
-    vec3 a = g->p[i ? i - 1 : g->n - 1], b = g->p[i], c = g->p[i + 1 < g->n ? i + 1 : 0];
-    if (v3_dot(g->normal[i], v3_cross(v3_sub(b, a), v3_sub(c, b))) < 0 &&
-        aqr_corner_angle(a, b, c, g->normal[i]) > straight)
+    if (aqr_polygon_angle(g, i) > straight)
       return true;
-  }
   return false;
 }
 

@@ -15,8 +15,13 @@ typedef struct aqr_polygon
 {
   unsigned n;
   vec3 p[AQR_POLYGON_CORNERS], normal[AQR_POLYGON_CORNERS]; /* normals of the input surface at the corners */
+  bool sharp[AQR_POLYGON_CORNERS]; /* vertices of creases: their normal is that of one side, or of none */
+  vec3 area;                       /* vector area of the corners so far: the normal at sharp ones */
   aqr_index vertex[AQR_POLYGON_CORNERS];
 } aqr_polygon;
+
+/* Adds a corner behind the others; there must be room. */
+void aqr_polygon_add(aqr_polygon* g, aqr_index index, const aqr_vertex* v);
 
 /* What a polygon costs: 0 for a rectangle, about 1 for a triangle or a pentagon of good shape, more for every further
  * corner and for concave ones. */
@@ -25,6 +30,8 @@ double aqr_polygon_cost(const aqr_polygon* g);
  * up to ten degrees, as where a line ends on another, are not. */
 bool aqr_polygon_is_concave(const aqr_polygon* g);
 
+/* Interior angle of corner i, in [0, 2 pi). */
+double aqr_polygon_angle(const aqr_polygon* g, unsigned i);
 /* Interior angle at p between the edges to `next` and from `prev`, in [0, 2 pi), as seen along the normal. */
 double aqr_corner_angle(vec3 prev, vec3 p, vec3 next, vec3 normal);
 

@@ -3,6 +3,7 @@
 
 #include "cells.h"
 #include "faces.h"
+#include "partition.h"
 #include "regularize.h"
 
 static const aqr_faces_options usual = { .convex_partition = true, .largest_valence = 5 };
@@ -166,6 +167,25 @@ AQR_TEST(concave_faces_are_split)
     CHECK(aqr_pm_face(&m, h) == AQR_NONE || n.z > -1e-12);
   }
   aqr_polygon_mesh_free(&c, &m);
+}
+
+/* The normal kept for a vertex of a crease may be that of the other side. */
+AQR_TEST(a_concave_corner_on_a_crease_is_seen_from_its_face)
+{
+  const vec3 corner[6] = { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 1, 0 }, { 1, 1, 0 }, { 1, 2, 0 }, { 0, 2, 0 } };
+  aqr_polygon g = { .n = 0 };
+  for (unsigned i = 0; i < 6; i++)
+  {
+    aqr_vertex v = { .position = corner[i], .normal = { 0, 0, 1 }, .kind = AQR_VERTEX_INTERIOR };
+    if (i == 3)
+    {
+      v.normal = v3(1, 0, 0);
+      v.kind = AQR_VERTEX_FEATURE;
+    }
+    aqr_polygon_add(&g, i, &v);
+  }
+  CHECK_BELOW(fabs(aqr_polygon_angle(&g, 3) - 1.5 * 3.14159265358979), 1e-9);
+  CHECK(aqr_polygon_is_concave(&g));
 }
 
 static aqr_vertex on_comb(double s, double t)

@@ -30,13 +30,13 @@ AQR_TEST(a_flat_sheet_gets_the_points_asked_for)
   shape_free(&m);
 }
 
-/* The largest spacing alone would give several hundred. */
+/* The largest spacing alone would give several hundred. A loop more or less is some eight points. */
 AQR_TEST(few_points_are_met_beyond_the_largest_spacing)
 {
   shape m = shape_torus(30, 2);
   const int64_t asked[] = { 100, 200, 300 };
   for (int i = 0; i < 3; i++)
-    CHECK_BELOW(fabs(points_over_asked(&m, asked[i]) - 1), 0.08);
+    CHECK_BELOW(fabs(points_over_asked(&m, asked[i]) - 1), 0.09);
   shape_free(&m);
 }
 
