@@ -42,7 +42,7 @@ typedef struct regions
   shared_number* euler;  /* per item, and of its whole region per root when all is counted */
   shared_flag* bordered; /* as euler: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
   uint8_t* suspect;      /* per face: looked at */
-  uint8_t* large;        /* per face: has more chords than threads have room for */
+  uint8_t* picked;       /* per face: to be looked at by one thread alone */
   uint8_t* is_bare;      /* per face: of a component without network */
   aqr_index* start;      /* per half-edge: the item where it begins, AQR_NONE where it is cut */
   aqr_layout at;         /* of the face looked at */
@@ -261,7 +261,7 @@ static void enter_faces(void* data, size_t begin, size_t end)
     else if (r->suspect[f] && aqr_layout_face(NULL, r->s, r->lines, r->net, f, &a))
       enter_face(r, &a);
     else
-      r->large[f] = r->suspect[f];
+      r->picked[f] = r->suspect[f];
 }
 
 /* What threads have no room for. */
@@ -269,7 +269,7 @@ static aqr_status enter_large(regions* r)
 {
   for (aqr_index f = 0; f < r->s->n_faces; f++)
   {
-    if (!r->large[f])
+    if (!r->picked[f])
       continue;
     if (!lay_out(r, f))
       return AQR_OUT_OF_MEMORY;
@@ -487,24 +487,50 @@ static void part_marks(regions* r, unsigned k)
   }
 }
 
+/* Whether a face has a cell of a region to be cut. Every cell begins after an end of a chord that the network kept; a
+ * face without such ends is one cell. */
+static bool has_some_to_cut(const regions* r, aqr_index f)
+{
+  bool whole = true;
+  for (aqr_index k = r->lines->head[f]; k != AQR_NONE; k = r->lines->segments[k].next)
+  {
+    const aqr_segment* chord = &r->lines->segments[k];
+    for (aqr_index i = 0; i < 2 && !r->lines->lines[chord->line].is_chain; i++)
+    {
+      aqr_border_mark m = { .sample = chord->sample + i, .starts = i == 0 };
+      if (r->net->edge_at[m.sample] == AQR_NONE)
+        continue;
+      if (needs_cut(r, item_after(r, &m)))
+        return true;
+      whole = false;
+    }
+  }
+  return whole && needs_cut(r, f);
+}
+
+static void pick_faces_to_cut(void* data, size_t begin, size_t end)
+{
+  regions* r = data;
+  for (aqr_index f = (aqr_index)begin; f < end; f++)
+    r->picked[f] = r->suspect[f] && has_some_to_cut(r, f);
+}
+
 /* Lists the cells of all faces that have some of a region to be cut, and their pieces. */
 static aqr_status list_cells(regions* r)
 {
   const aqr_surface* s = r->s;
+  aqr_status picked = aqr_parallel(r->c, s->n_faces, pick_faces_to_cut, r, 0.9, 0.95);
+  if (picked != AQR_OK)
+    return picked;
   for (aqr_index f = 0; f < s->n_faces; f++)
   {
     if (f % 65536 == 0 && !aqr_step(r->c, 0.95))
       return AQR_CANCELLED;
     r->slot[f] = AQR_NONE;
-    if (!r->suspect[f] || (is_plain(r, f) && !needs_cut(r, f)))
+    if (!r->picked[f])
       continue;
     if (!lay_out(r, f))
       return AQR_OUT_OF_MEMORY;
-    bool any = false;
-    for (size_t i = 0; i < r->at.n_cells; i++)
-      any |= needs_cut(r, r->at.item[i]);
-    if (!any)
-      continue;
     for (unsigned k = 0; k < 3; k++)
       part_marks(r, k);
     if (!AQR_RESERVE(r->c, r->cells, r->cell_capacity, r->n_cells + r->at.n_cells) ||
@@ -782,7 +808,7 @@ static aqr_status draw_arcs(regions* r, size_t* added)
   const aqr_surface* s = r->s;
   link* links = NULL;
   size_t n = 0, capacity = 0, n_hubs = s->n_points + 2 * r->lines->n_samples;
-  hub* hubs = AQR_NEW0(r->c, hub, n_hubs);
+  hub* hubs = AQR_NEW(r->c, hub, n_hubs); /* the few that links hang at are set */
   uint8_t *gone = NULL, *taken = AQR_NEW0(r->c, uint8_t, r->n_cells);
   aqr_status status = AQR_OK;
   AQR_REQUIRE(hubs && taken, AQR_OUT_OF_MEMORY);
@@ -792,9 +818,14 @@ static aqr_status draw_arcs(regions* r, size_t* added)
   if (n)
     qsort(links, n, sizeof *links, by_length);
   for (uint32_t i = 0; i < n; i++)
+    hubs[r->pieces[links[i].piece].from] = hubs[r->pieces[links[i].piece].to] = (hub){ 0, 0 };
+  for (uint32_t i = 0; i < n; i++)
     hang(r, hubs, links, i, false);
-  for (aqr_index v = 0; v < n_hubs; v++)
-    strip(r, hubs, links, gone, v);
+  for (uint32_t i = 0; i < n; i++)
+  {
+    strip(r, hubs, links, gone, r->pieces[links[i].piece].from);
+    strip(r, hubs, links, gone, r->pieces[links[i].piece].to);
+  }
   for (uint32_t i = 0; i < n; i++)
   {
     if (gone[i])
@@ -829,9 +860,9 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   r.parent = AQR_NEW(c, shared_index, r.n_items);
   r.euler = AQR_NEW(c, shared_number, r.n_items);
   r.bordered = AQR_NEW(c, shared_flag, r.n_items);
-  r.large = AQR_NEW0(c, uint8_t, s->n_faces);
+  r.picked = AQR_NEW0(c, uint8_t, s->n_faces);
   r.slot = AQR_NEW(c, aqr_index, s->n_faces);
-  AQR_REQUIRE(r.start && r.parent && r.euler && r.bordered && r.large && r.slot, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(r.start && r.parent && r.euler && r.bordered && r.picked && r.slot, AQR_OUT_OF_MEMORY);
   AQR_TRY(count(&r));
   bool any = false;
   for (aqr_index i = 0; cut && i < r.n_items && !any; i++)
@@ -846,7 +877,7 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   }
 done:
   AQR_DROP(c, r.start, 3 * s->n_faces);
-  AQR_DROP(c, r.large, s->n_faces);
+  AQR_DROP(c, r.picked, s->n_faces);
   AQR_DROP(c, r.parent, r.n_items);
   AQR_DROP(c, r.euler, r.n_items);
   AQR_DROP(c, r.bordered, r.n_items);
