@@ -4,6 +4,21 @@
 
 #include <string.h>
 
+enum
+{
+  faces_at_once = 1 << 17, /* looked through by all threads before their crossings are added */
+  pairs_held = 31
+};
+
+/* What the pairs of a face's chords do, in the order they are looked at, two bits for each. */
+typedef enum pair_state
+{
+  apart,
+  crosses_left,  /* the second runs from the right of the first to its left */
+  crosses_right, /* the other way */
+  not_looked_at  /* nor are the pairs after it: there are more than are held */
+} pair_state;
+
 typedef struct finder
 {
   aqr_context* c;
@@ -11,38 +26,97 @@ typedef struct finder
   const aqr_lines* l;
   aqr_network* net;
   aqr_crossing_order* order;
+  aqr_index first_face; /* of those looked at now */
+  uint64_t* pairs;      /* of each of them */
 } finder;
 
-static aqr_status find(finder* b)
+/* The first of a face's segments from i on that is a chord, not on a chain; or AQR_NONE. */
+static aqr_index chord_from(const aqr_lines* l, aqr_index i)
 {
-  const aqr_surface* s = b->s;
+  while (i != AQR_NONE && l->lines[l->segments[i].line].is_chain)
+    i = l->segments[i].next;
+  return i;
+}
+
+static aqr_index next_chord(const aqr_lines* l, aqr_index i)
+{
+  return chord_from(l, l->segments[i].next);
+}
+
+static pair_state look_at(const finder* b, aqr_index f, aqr_index i, aqr_index j)
+{
+  const aqr_sample *p = &b->l->samples[b->l->segments[i].sample], *q = &b->l->samples[b->l->segments[j].sample];
+  int turn = aqr_chords_cross(b->s, f, p, p + 1, q, q + 1);
+  return turn == 0 ? apart : turn > 0 ? crosses_left : crosses_right;
+}
+
+static uint64_t pairs_of(const finder* b, aqr_index f)
+{
+  const aqr_lines* l = b->l;
+  uint64_t pairs = 0;
+  unsigned n = 0;
+  for (aqr_index i = chord_from(l, l->head[f]); i != AQR_NONE; i = next_chord(l, i))
+    for (aqr_index j = next_chord(l, i); j != AQR_NONE; j = next_chord(l, j), n++)
+    {
+      if (n == pairs_held)
+        return pairs | (uint64_t)not_looked_at << (2 * n);
+      pairs |= (uint64_t)look_at(b, f, i, j) << (2 * n);
+    }
+  return pairs;
+}
+
+static void look_at_faces(void* data, size_t begin, size_t end)
+{
+  finder* b = data;
+  for (size_t i = begin; i < end; i++)
+    b->pairs[i] = pairs_of(b, b->first_face + (aqr_index)i);
+}
+
+/* Adds the crossings of a face to the network's. */
+static aqr_status add_crossings(finder* b, aqr_index f, uint64_t pairs)
+{
   const aqr_lines* l = b->l;
   aqr_network* net = b->net;
-  for (aqr_index f = 0; f < s->n_faces; f++)
-  {
-    if (f % 65536 == 0 && !aqr_step(b->c, 0.2 * (double)f / (double)s->n_faces))
-      return AQR_CANCELLED;
-    for (aqr_index i = l->head[f]; i != AQR_NONE; i = l->segments[i].next)
+  for (aqr_index i = chord_from(l, l->head[f]); i != AQR_NONE && pairs; i = next_chord(l, i))
+    for (aqr_index j = next_chord(l, i); j != AQR_NONE && pairs; j = next_chord(l, j))
     {
-      aqr_index p = l->segments[i].sample;
-      if (l->lines[l->segments[i].line].is_chain)
+      pair_state state = (pair_state)(pairs & 3);
+      if (state == not_looked_at)
+        state = look_at(b, f, i, j);
+      else
+        pairs >>= 2;
+      if (state == apart)
         continue;
-      for (aqr_index j = l->segments[i].next; j != AQR_NONE; j = l->segments[j].next)
-      {
-        aqr_index q = l->segments[j].sample;
-        if (l->lines[l->segments[j].line].is_chain)
-          continue;
-        int turn = aqr_chords_cross(s, f, &l->samples[p], &l->samples[p + 1], &l->samples[q], &l->samples[q + 1]);
-        if (!turn)
-          continue;
-        if (!AQR_RESERVE(b->c, net->crossings, net->crossing_capacity, net->n_crossings + 1))
-          return AQR_OUT_OF_MEMORY;
-        net->crossings[net->n_crossings++] = (aqr_crossing){ { p, q }, { l->segments[i].line, l->segments[j].line },
-          { AQR_NONE, AQR_NONE }, { AQR_NONE, AQR_NONE }, (int8_t)turn, true };
-      }
+      if (!AQR_RESERVE(b->c, net->crossings, net->crossing_capacity, net->n_crossings + 1))
+        return AQR_OUT_OF_MEMORY;
+      net->crossings[net->n_crossings++] =
+        (aqr_crossing){ { l->segments[i].sample, l->segments[j].sample }, { l->segments[i].line, l->segments[j].line },
+          { AQR_NONE, AQR_NONE }, { AQR_NONE, AQR_NONE }, (int8_t)(state == crosses_left ? 1 : -1), true };
     }
+  return AQR_OK;
+}
+
+/* All threads look at the faces, one adds what they found in the order of the faces. */
+static aqr_status find(finder* b)
+{
+  aqr_status status = AQR_OK;
+  size_t n_faces = b->s->n_faces;
+  b->pairs = AQR_NEW(b->c, uint64_t, faces_at_once);
+  AQR_REQUIRE(b->pairs, AQR_OUT_OF_MEMORY);
+  for (size_t first = 0; first < n_faces; first += faces_at_once)
+  {
+    size_t n = n_faces - first < faces_at_once ? n_faces - first : faces_at_once;
+    double from = 0.2 * (double)first / (double)n_faces, to = 0.2 * (double)(first + n) / (double)n_faces;
+    b->first_face = (aqr_index)first;
+    AQR_TRY(aqr_parallel(b->c, n, look_at_faces, b, from, to));
+    for (size_t i = 0; i < n; i++)
+      if (b->pairs[i])
+        AQR_TRY(add_crossings(b, b->first_face + (aqr_index)i, b->pairs[i]));
   }
-  return net->n_crossings < AQR_NONE / 8 ? AQR_OK : AQR_TOO_LARGE;
+  AQR_REQUIRE(b->net->n_crossings < AQR_NONE / 8, AQR_TOO_LARGE);
+done:
+  AQR_DROP(b->c, b->pairs, faces_at_once);
+  return status;
 }
 
 static aqr_status list_by_chord(finder* b)
@@ -188,7 +262,7 @@ static void order_along_chords(void* data, size_t begin, size_t end)
 aqr_status aqr_crossings_find(
   aqr_context* c, const aqr_surface* s, const aqr_lines* lines, aqr_network* net, aqr_crossing_order* order)
 {
-  finder b = { c, s, lines, net, order };
+  finder b = { .c = c, .s = s, .l = lines, .net = net, .order = order };
   aqr_status status = AQR_OK;
   AQR_TRY(find(&b));
   AQR_TRY(list_by_chord(&b));

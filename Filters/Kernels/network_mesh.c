@@ -83,6 +83,37 @@ static aqr_vertex vertex_of_stop(
   return r;
 }
 
+typedef struct vertices
+{
+  const aqr_surface* s;
+  const aqr_field* field;
+  const aqr_sizing* sizing;
+  const aqr_lines* lines;
+  const aqr_network* net;
+  aqr_polygon_mesh* mesh;
+  aqr_index* id; /* per node of the network: its vertex, or AQR_NONE */
+} vertices;
+
+static aqr_index count_vertices(vertices* v)
+{
+  const aqr_network* net = v->net;
+  aqr_index n = 0;
+  for (size_t i = 0; i < net->n_crossings + net->n_stops; i++)
+    v->id[i] = i >= net->n_crossings || net->crossings[i].alive ? n++ : AQR_NONE;
+  return n;
+}
+
+static void place_vertices(void* data, size_t begin, size_t end)
+{
+  vertices* v = data;
+  size_t n_crossings = v->net->n_crossings;
+  for (size_t i = begin; i < end; i++)
+    if (v->id[i] != AQR_NONE)
+      v->mesh->vertices[v->id[i]] = i < n_crossings
+        ? vertex_of_crossing(v->s, v->field, v->sizing, v->lines, &v->net->crossings[i])
+        : vertex_of_stop(v->s, v->field, v->sizing, v->lines, &v->net->stops[i - n_crossings]);
+}
+
 aqr_status aqr_network_mesh(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
   const aqr_lines* lines, const aqr_network* net, aqr_polygon_mesh* mesh)
 {
@@ -96,15 +127,9 @@ aqr_status aqr_network_mesh(aqr_context* c, const aqr_surface* s, const aqr_fiel
                 AQR_RESERVE(c, mesh->edge_type, mesh->edge_capacity, net->n_edges) &&
                 AQR_RESERVE(c, mesh->faces, mesh->face_capacity, net->n_loops),
     AQR_OUT_OF_MEMORY);
-  for (size_t i = 0; i < n_nodes; i++)
-  {
-    bool crossing = i < net->n_crossings;
-    id[i] = (aqr_index)mesh->n_vertices;
-    if (crossing && net->crossings[i].alive)
-      mesh->vertices[mesh->n_vertices++] = vertex_of_crossing(s, field, sizing, lines, &net->crossings[i]);
-    else if (!crossing)
-      mesh->vertices[mesh->n_vertices++] = vertex_of_stop(s, field, sizing, lines, &net->stops[i - net->n_crossings]);
-  }
+  vertices v = { s, field, sizing, lines, net, mesh, id };
+  mesh->n_vertices = count_vertices(&v);
+  AQR_TRY(aqr_parallel(c, n_nodes, place_vertices, &v, 1, 1));
   mesh->n_faces = net->n_loops;
   mesh->n_half_edges = 2 * net->n_edges;
   if (net->type) /* NULL where the network has no edge */
