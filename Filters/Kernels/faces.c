@@ -2,6 +2,7 @@
 #include "faces.h"
 
 #include "joints.h"
+#include "marks.h"
 #include "partition.h"
 #include "regularize.h"
 
@@ -48,6 +49,28 @@ static double face_cost(
   if (!gather(m, f, gone, kept, middle, &g))
     return 1.1 * (double)aqr_pm_face_size(m, f);
   return g.n < 3 ? 0 : aqr_polygon_cost(&g);
+}
+
+/* Four corners, all different half-edges. */
+static bool is_quad(const aqr_polygon_mesh* m, aqr_index f)
+{
+  aqr_index h = m->faces[f];
+  return aqr_pm_next(m, aqr_pm_next(m, h)) == aqr_pm_prev(m, aqr_pm_prev(m, h)) &&
+         aqr_pm_next(m, aqr_pm_next(m, h)) != h && aqr_pm_next(m, aqr_pm_next(m, aqr_pm_next(m, h))) != h;
+}
+
+/* Contraction between such faces, lines that go on, and redrawing never make anything else of a quad. */
+static bool is_odd(const aqr_polygon_mesh* m, aqr_index f, const void* options)
+{
+  (void)options;
+  return m->faces[f] != AQR_NONE && !is_quad(m, f);
+}
+
+/* Whether both faces beside h have other than four corners. */
+static bool between_odd_faces(const aqr_polygon_mesh* m, const aqr_marks* odd, aqr_index h)
+{
+  aqr_index f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
+  return f != AQR_NONE && g != AQR_NONE && aqr_is_marked(odd, f) && aqr_is_marked(odd, g) && !is_quad(m, f) && !is_quad(m, g);
 }
 
 /* ---- contraction ---- */
@@ -127,30 +150,15 @@ static bool merge_near_intersections(aqr_context* c, aqr_polygon_mesh* m)
   return true;
 }
 
-/* Four corners, all different half-edges. */
-static bool is_quad(const aqr_polygon_mesh* m, aqr_index f)
-{
-  aqr_index h = m->faces[f];
-  return aqr_pm_next(m, aqr_pm_next(m, h)) == aqr_pm_prev(m, aqr_pm_prev(m, h)) &&
-         aqr_pm_next(m, aqr_pm_next(m, h)) != h && aqr_pm_next(m, aqr_pm_next(m, aqr_pm_next(m, h))) != h;
-}
-
-/* Whether both faces beside h have other than four corners. */
-static bool between_odd_faces(const aqr_polygon_mesh* m, aqr_index h)
-{
-  aqr_index f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
-  return f != AQR_NONE && g != AQR_NONE && !is_quad(m, f) && !is_quad(m, g);
-}
-
 /* Lines that end from both sides on nearby places of a third make two pentagons; where they meet there is a crossing
  * and all faces are quads. Short sides of triangles go likewise. */
-static bool weld_joints(aqr_context* c, aqr_polygon_mesh* m)
+static bool weld_joints(aqr_context* c, aqr_polygon_mesh* m, const aqr_marks* odd)
 {
   for (aqr_index h = 0; h < m->n_half_edges; h += 2)
   {
     if (h % 65536 == 0 && !aqr_step(c, 0.4))
       return false;
-    if (aqr_pm_edge_lives(m, h) && between_odd_faces(m, h) && edge_length(m, h) < weld_reach * local_size(m, h))
+    if (aqr_pm_edge_lives(m, h) && between_odd_faces(m, odd, h) && edge_length(m, h) < weld_reach * local_size(m, h))
       contract_if(m, h, least_gain);
   }
   return true;
@@ -218,7 +226,7 @@ static aqr_status redraw(aqr_context* c, aqr_polygon_mesh* m, aqr_index h, unsig
   return aqr_pm_remove_edge(m, h) ? draw(c, m, corner, &p) : AQR_INTERNAL;
 }
 
-static aqr_status redraw_all(aqr_context* c, aqr_polygon_mesh* m, unsigned largest)
+static aqr_status redraw_all(aqr_context* c, aqr_polygon_mesh* m, const aqr_marks* odd, unsigned largest)
 {
   aqr_status status = AQR_OK;
   size_t n = m->n_half_edges;
@@ -226,24 +234,44 @@ static aqr_status redraw_all(aqr_context* c, aqr_polygon_mesh* m, unsigned large
   {
     if (h % 65536 == 0)
       AQR_REQUIRE(aqr_step(c, 0.6), AQR_CANCELLED);
-    if (aqr_pm_edge_lives(m, h) && !aqr_pm_on_chain(m, h) && between_odd_faces(m, h))
+    if (aqr_pm_edge_lives(m, h) && !aqr_pm_on_chain(m, h) && between_odd_faces(m, odd, h))
       AQR_TRY(redraw(c, m, h, largest));
   }
 done:
   return status;
 }
 
+/* Adds the corners of a face; false where it has more than there is room for. */
+static bool add_corners(const aqr_polygon_mesh* m, aqr_index f, aqr_polygon* g, aqr_index* corner)
+{
+  aqr_index h = m->faces[f];
+  do
+  {
+    if (g->n == AQR_POLYGON_CORNERS)
+      return false;
+    add_corner(m, h, g, corner);
+    h = aqr_pm_next(m, h);
+  } while (h != m->faces[f]);
+  return true;
+}
+
+/* Whether a face has too many corners or a concave one. Splitting it leaves those of all other faces as they are. */
+static bool is_to_part(const aqr_polygon_mesh* m, aqr_index f, const void* options)
+{
+  const aqr_faces_options* o = options;
+  aqr_index corner[AQR_POLYGON_CORNERS];
+  aqr_polygon g; /* filled as far as there are corners: most faces need nothing more */
+  g.n = 0;
+  return m->faces[f] != AQR_NONE && (!add_corners(m, f, &g, corner) || (int)g.n > o->largest_valence ||
+                                      (o->convex_partition && aqr_polygon_is_concave(&g)));
+}
+
 /* The best partition of a face that has too many corners or a concave one (paper 5.2). */
 static aqr_status partition_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, const aqr_faces_options* o)
 {
   aqr_polygon g = { .n = 0 };
-  aqr_index corner[AQR_POLYGON_CORNERS], h = m->faces[f];
-  do
-  {
-    add_corner(m, h, &g, corner);
-    h = aqr_pm_next(m, h);
-  } while (h != m->faces[f]);
-  if ((int)g.n <= o->largest_valence && !(o->convex_partition && aqr_polygon_is_concave(&g)))
+  aqr_index corner[AQR_POLYGON_CORNERS];
+  if (!is_to_part(m, f, o) || !add_corners(m, f, &g, corner))
     return AQR_OK;
   aqr_partition p = aqr_best_partition(m, &g, o->largest_valence > 5 ? 5 : (unsigned)o->largest_valence, AQR_NONE);
   return p.cost < INFINITY ? draw(c, m, corner, &p) : AQR_OK;
@@ -311,14 +339,15 @@ static aqr_status split_large(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, 
 }
 
 /* Faces that a split adds come at the end of the list and are looked at in turn. */
-static aqr_status partition_all(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces_options* o)
+static aqr_status partition_all(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces_options* o, aqr_marks* marks)
 {
   aqr_status status = AQR_OK;
+  AQR_TRY(aqr_mark(c, m, m->n_faces, is_to_part, o, marks));
   for (aqr_index f = 0; f < m->n_faces; f++)
   {
     if (f % 65536 == 0)
       AQR_REQUIRE(aqr_step(c, 0.8), AQR_CANCELLED);
-    if (m->faces[f] == AQR_NONE)
+    if (m->faces[f] == AQR_NONE || !aqr_is_marked(marks, f))
       continue;
     size_t n = aqr_pm_face_size(m, f);
     for (bool split = true; split && n > AQR_POLYGON_CORNERS && n > (size_t)o->largest_valence;)
@@ -350,24 +379,27 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
 {
   aqr_status status = AQR_OK;
   unsigned largest = options->largest_valence > 5 ? 5 : (unsigned)options->largest_valence;
-  AQR_REQUIRE(aqr_pm_is_consistent(m), AQR_INTERNAL);
-  AQR_REQUIRE(aqr_tidy(c, m), AQR_CANCELLED);
+  aqr_marks marks = { 0 };
+  AQR_TRY(aqr_pm_verify(c, m, false));
+  AQR_TRY(aqr_tidy(c, m));
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(merge_near_intersections(c, m), AQR_CANCELLED);
   for (unsigned round = 1; round <= rounds; round++) /* near partners first, then farther ones */
   {
-    AQR_REQUIRE(weld_joints(c, m), AQR_CANCELLED);
+    AQR_TRY(aqr_mark(c, m, m->n_faces, is_odd, NULL, &marks));
+    AQR_REQUIRE(weld_joints(c, m, &marks), AQR_CANCELLED);
     AQR_TRY(aqr_joints_extend(c, m, round));
-    AQR_TRY(redraw_all(c, m, largest));
-    AQR_TRY(partition_all(c, m, options));
+    AQR_TRY(redraw_all(c, m, &marks, largest));
+    AQR_TRY(partition_all(c, m, options, &marks));
   }
   AQR_REQUIRE(join_loose(c, m), AQR_CANCELLED);
   AQR_REQUIRE(aqr_step(c, 0.9), AQR_CANCELLED);
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(aqr_step(c, 0.95), AQR_CANCELLED);
-  AQR_REQUIRE(aqr_pm_is_consistent(m) && aqr_pm_is_regular(m), AQR_INTERNAL);
+  AQR_TRY(aqr_pm_verify(c, m, true));
   AQR_REQUIRE(aqr_step(c, 0.98), AQR_CANCELLED);
   AQR_TRY(aqr_pm_compact(c, m));
 done:
+  aqr_marks_free(c, &marks);
   return status;
 }

@@ -141,6 +141,8 @@ bool aqr_pm_is_consistent(const aqr_polygon_mesh* m);
 /* Whether it is an ordinary mesh besides: no loops, no two edges between the same vertices, no vertex twice in a face,
  * no two faces with the same vertices. */
 bool aqr_pm_is_regular(const aqr_polygon_mesh* m);
+/* The same on all threads: AQR_INTERNAL where it is not consistent, or not regular though it is to be. */
+aqr_status aqr_pm_verify(aqr_context* c, const aqr_polygon_mesh* m, bool regular);
 /* Vertices - edges + faces. */
 long aqr_pm_euler(const aqr_polygon_mesh* m);
 

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "regularize.h"
 
+#include "marks.h"
+
+#include <stdatomic.h>
 #include <string.h>
 
 enum
 {
   tidy_passes = 32,
+  calm = 4096, /* half-edges with nothing to tidy, before all threads look where there is something again */
+  most_compared = 32, /* edges or corners compared with each other to see whether one is double */
   arc_candidates = 24 /* corners tried on either side when a face that meets itself is split */
 };
 
@@ -53,20 +58,62 @@ static bool tidy_at(aqr_polygon_mesh* m, aqr_index h)
   return m->vertices[v].out == h && aqr_can_join(m, v) && is_straight(m, v) && aqr_pm_join_edges(m, v);
 }
 
-bool aqr_tidy(aqr_context* c, aqr_polygon_mesh* m)
+/* Whether there may be something to tidy at h. */
+static bool is_untidy(const aqr_polygon_mesh* m, aqr_index h)
 {
-  for (unsigned pass = 0; pass < tidy_passes; pass++)
+  aqr_index n = aqr_pm_next(m, h), v = aqr_pm_from(m, h);
+  if (aqr_pm_face(m, h) == AQR_NONE)
+    return false;
+  if (!aqr_pm_on_chain(m, h) && (aqr_pm_prev(m, h) == (h ^ 1) || n == h || aqr_pm_next(m, n) == h))
+    return true;
+  return m->vertices[v].out == h && aqr_can_join(m, v) && is_straight(m, v);
+}
+
+typedef struct search
+{
+  const aqr_polygon_mesh* m;
+  size_t from;
+  _Atomic(aqr_index) found; /* the least half-edge from there on that may be untidy */
+} search;
+
+static void find_untidy(void* data, size_t begin, size_t end)
+{
+  search* k = data;
+  aqr_index h = (aqr_index)(k->from + begin), last = (aqr_index)(k->from + end), found = k->found;
+  while (h < last && h < found && !(aqr_pm_edge_lives(k->m, h) && is_untidy(k->m, h)))
+    h++;
+  while (h < last && h < found && !atomic_compare_exchange_weak(&k->found, &found, h))
+    ;
+}
+
+/* From the next untidy half-edge, which all threads look for, to where none has been met for a while. */
+static aqr_status tidy_stretch(aqr_context* c, aqr_polygon_mesh* m, aqr_index* h, bool* changed)
+{
+  search next = { m, *h, (aqr_index)m->n_half_edges };
+  aqr_status status = aqr_parallel(c, m->n_half_edges - *h, find_untidy, &next, 0, 0);
+  *h = next.found;
+  for (unsigned tidy = 0; status == AQR_OK && tidy < calm && *h < m->n_half_edges; tidy++, ++*h)
+    while (aqr_pm_edge_lives(m, *h) && tidy_at(m, *h)) /* each turn removes an edge */
+    {
+      *changed = true;
+      tidy = 0;
+    }
+  return status;
+}
+
+aqr_status aqr_tidy(aqr_context* c, aqr_polygon_mesh* m)
+{
+  aqr_status status = AQR_OK;
+  bool changed = true;
+  for (unsigned pass = 0; pass < tidy_passes && changed; pass++)
   {
-    bool changed = false;
-    if (!aqr_step(c, 0))
-      return false;
-    for (aqr_index h = 0; h < m->n_half_edges; h++)
-      while (aqr_pm_edge_lives(m, h) && tidy_at(m, h)) /* each turn removes an edge */
-        changed = true;
-    if (!changed)
-      break;
+    changed = false;
+    AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
+    for (aqr_index h = 0; h < m->n_half_edges;)
+      AQR_TRY(tidy_stretch(c, m, &h, &changed));
   }
-  return true;
+done:
+  return status;
 }
 
 /* ---- making it regular ---- */
@@ -102,6 +149,26 @@ static aqr_status split_aside(aqr_context* c, aqr_polygon_mesh* m, aqr_index h)
   return aqr_pm_split_edge(c, m, h, &w, &inserted);
 }
 
+/* Whether a vertex has two edges to one with a higher number, or too many to compare them. Splitting the edges at one
+ * vertex makes none parallel at another. */
+static bool may_have_parallel_edges(const aqr_polygon_mesh* m, aqr_index u, const void* options)
+{
+  (void)options;
+  aqr_index first = m->vertices[u].out, h = first;
+  size_t n = 0;
+  if (first == AQR_NONE)
+    return false;
+  do
+  {
+    for (aqr_index g = first; g != h; g = aqr_pm_next_around(m, g))
+      if (aqr_pm_to(m, g) == aqr_pm_to(m, h) && aqr_pm_to(m, h) > u)
+        return true;
+    h = aqr_pm_next_around(m, h);
+    n++;
+  } while (h != first && n < most_compared);
+  return h != first;
+}
+
 /* Loops become three edges; of two edges between the same vertices one is split, rather not one of a chain. Afterwards
  * the graph is simple: inserted vertices have two different neighbours and no parallel edges. */
 static aqr_status split_parallel_edges(aqr_context* c, aqr_polygon_mesh* m)
@@ -109,6 +176,7 @@ static aqr_status split_parallel_edges(aqr_context* c, aqr_polygon_mesh* m)
   aqr_status status = AQR_OK;
   size_t n = m->n_vertices, n_edges = m->n_half_edges;
   aqr_index *seen = AQR_NEW(c, aqr_index, n), *by = AQR_NEW(c, aqr_index, n);
+  aqr_marks parallel = { 0 };
   AQR_REQUIRE(seen && by, AQR_OUT_OF_MEMORY);
   for (aqr_index h = 0; h < n_edges; h += 2)
     if (aqr_pm_edge_lives(m, h) && aqr_pm_from(m, h) == aqr_pm_to(m, h))
@@ -118,9 +186,10 @@ static aqr_status split_parallel_edges(aqr_context* c, aqr_polygon_mesh* m)
     }
   for (size_t v = 0; v < n; v++)
     by[v] = AQR_NONE;
+  AQR_TRY(aqr_mark(c, m, n, may_have_parallel_edges, NULL, &parallel));
   for (aqr_index u = 0; u < n; u++)
   {
-    if (m->vertices[u].out == AQR_NONE)
+    if (!aqr_is_marked(&parallel, u))
       continue;
     aqr_index h = m->vertices[u].out;
     do
@@ -150,6 +219,7 @@ static aqr_status split_parallel_edges(aqr_context* c, aqr_polygon_mesh* m)
     if (aqr_pm_edge_lives(m, h) && aqr_pm_next(m, h) == (h ^ 1) && aqr_pm_prev(m, h) == (h ^ 1))
       AQR_TRY(split_aside(c, m, h));
 done:
+  aqr_marks_free(c, &parallel);
   AQR_DROP(c, seen, n);
   AQR_DROP(c, by, n);
   return status;
@@ -256,6 +326,26 @@ static aqr_status keep_rest(aqr_context* c, const aqr_polygon_mesh* m, walker* w
   return AQR_OK;
 }
 
+/* Whether a face has a vertex twice, or too many to compare them. Splitting one leaves the corners of others as they
+ * are. */
+static bool may_have_repeats(const aqr_polygon_mesh* m, aqr_index f, const void* options)
+{
+  (void)options;
+  aqr_index first = m->faces[f], h = first;
+  size_t n = 0;
+  if (first == AQR_NONE)
+    return false;
+  do
+  {
+    for (aqr_index g = first; g != h; g = aqr_pm_next(m, g))
+      if (aqr_pm_from(m, g) == aqr_pm_from(m, h))
+        return true;
+    h = aqr_pm_next(m, h);
+    n++;
+  } while (h != first && n < most_compared);
+  return h != first;
+}
+
 /* Each split lowers the sum over all faces of (corners - different vertices) by at least one, because the two corners
  * at one vertex come to lie in different faces and every other vertex gains at most a corner where it gains a face. In
  * a simple graph there is always a pair of different vertices to connect: else the face would be v w v w, which needs
@@ -266,9 +356,11 @@ static aqr_status part_repeats(aqr_context* c, aqr_polygon_mesh* m)
   walker w = { 0 };
   aqr_index stamp = 0;
   size_t known = 0;
+  aqr_marks repeats = { 0 };
+  AQR_TRY(aqr_mark(c, m, m->n_faces, may_have_repeats, NULL, &repeats));
   for (aqr_index f = 0; f < m->n_faces; f++)
   {
-    if (m->faces[f] == AQR_NONE)
+    if (m->faces[f] == AQR_NONE || !aqr_is_marked(&repeats, f))
       continue;
     AQR_TRY(collect(c, m, f, &w));
     for (;;)
@@ -295,10 +387,17 @@ static aqr_status part_repeats(aqr_context* c, aqr_polygon_mesh* m)
     }
   }
 done:
+  aqr_marks_free(c, &repeats);
   AQR_DROP(c, w.corner, w.capacity);
   AQR_DROP(c, w.last, w.last_capacity);
   AQR_DROP(c, w.mark, w.mark_capacity);
   return status;
+}
+
+static bool has_duplicate(const aqr_polygon_mesh* m, aqr_index f, const void* options)
+{
+  (void)options;
+  return m->faces[f] != AQR_NONE && aqr_pm_duplicate(m, f) != AQR_NONE;
 }
 
 /* A vertex inside the first of two faces with the same vertices tells them apart, and no other face has it. */
@@ -306,9 +405,11 @@ static aqr_status part_duplicates(aqr_context* c, aqr_polygon_mesh* m)
 {
   aqr_status status = AQR_OK;
   size_t n = m->n_faces;
+  aqr_marks duplicates = { 0 };
+  AQR_TRY(aqr_mark(c, m, n, has_duplicate, NULL, &duplicates));
   for (aqr_index f = 0; f < n; f++)
   {
-    if (m->faces[f] == AQR_NONE || aqr_pm_duplicate(m, f) == AQR_NONE)
+    if (!aqr_is_marked(&duplicates, f) || !has_duplicate(m, f, NULL)) /* not where the other has been parted from it */
       continue;
     aqr_index h0 = m->faces[f], h1 = aqr_pm_next(m, h0), h2 = aqr_pm_next(m, h1), inserted;
     bool triangle = aqr_pm_next(m, h2) == h0;
@@ -329,6 +430,7 @@ static aqr_status part_duplicates(aqr_context* c, aqr_polygon_mesh* m)
       AQR_TRY(aqr_pm_split_face(c, m, h2, aqr_pm_next(m, aqr_pm_next(m, h2)), AQR_LINE_MIN));
   }
 done:
+  aqr_marks_free(c, &duplicates);
   return status;
 }
 

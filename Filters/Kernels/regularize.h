@@ -8,7 +8,7 @@
 
 /* Removes what draws nothing: dangling edges (paper 5), digons, loops around nothing, vertices in the middle of a
  * straight line. Only ever removes; chains stay. */
-bool aqr_tidy(aqr_context* c, aqr_polygon_mesh* m);
+aqr_status aqr_tidy(aqr_context* c, aqr_polygon_mesh* m);
 
 /* Makes any consistent mesh regular by inserting vertices and splitting faces, for every input. New vertices carry the
  * place of a neighbour. */

@@ -135,7 +135,7 @@ AQR_TEST(lines_with_gaps_give_more_quads_than_they_left_and_no_loose_vertex)
       double at = (1 + 2 * (next_random(&state) % 12)) / 24.0;
       erase(&m, k % 2 ? v3(a, at, 0) : v3(at, a, 0), k % 2 ? v3(b, at, 0) : v3(at, b, 0));
     }
-    CHECK(aqr_tidy(&c, &m));
+    CHECK(aqr_tidy(&c, &m) == AQR_OK);
     before = count_quads(&m);
     for (size_t f = 0; f < m.n_faces; f++)
       faces += m.faces[f] != AQR_NONE;
@@ -217,7 +217,7 @@ AQR_TEST(lines_that_end_towards_each_other_are_joined)
   CHECK(sheet_of_quads(&c, 10, 10, &m));
   erase(&m, v3(0.4, 0.5, 0), v3(0.7, 0.5, 0));
   CHECK(count_quads(&m) == 94);
-  CHECK(aqr_tidy(&c, &m));
+  CHECK(aqr_tidy(&c, &m) == AQR_OK);
   CHECK(count_quads(&m) == 95);
   CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
   CHECK(count_quads(&m) == 100 && m.n_faces == 100 && m.n_vertices == 121);
