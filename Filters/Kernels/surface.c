@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The working surface: any triangles in, oriented manifold triangles out. Paper 3.2 for the halving of long edges. */
+#include "shared.h"
 #include "surface.h"
 
 #include <string.h>
@@ -12,37 +13,57 @@ typedef struct builder
   const aqr_input* in;
   aqr_surface* s;
   aqr_report* report;
-  aqr_index* weld; /* per input point: the input point it was joined to */
+  aqr_index* weld;     /* per input point: the input point it was joined to */
+  atomic_bool faulty;  /* some corner of the input */
+  atomic_bool* used;   /* per input point: by a triangle */
+  aqr_shared_double box[6]; /* of the points in use: their highest coordinates, and the negatives of the lowest */
+  aqr_shared_double area;   /* of the largest parallelogram that two sides of a triangle span */
+  size_t* first;            /* per point: where its bucket begins */
+  aqr_index* in_bucket;     /* half-edges by their smaller point */
+  aqr_shared_size split_edges;
 } builder;
 
-static vec3 input_point(const aqr_input* in, size_t i)
+static bool is_inside(const aqr_input* in, int64_t i)
 {
-  return in->points_f
-           ? v3((double)in->points_f[3 * i], (double)in->points_f[3 * i + 1], (double)in->points_f[3 * i + 2])
-           : v3_load(in->points_d + 3 * i);
+  return i >= 0 && (size_t)i < in->number_of_points;
+}
+
+/* Of the triangles' corners. */
+static aqr_status check_corners(const aqr_input* in, size_t begin, size_t end)
+{
+  for (size_t i = begin; i < end; i++)
+  {
+    if (!is_inside(in, in->triangles[i]))
+      return AQR_INDEX_OUT_OF_RANGE;
+    vec3 p = aqr_input_point(in, (size_t)in->triangles[i]);
+    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
+      return AQR_NON_FINITE_POINT;
+  }
+  return AQR_OK;
+}
+
+static void look_for_faults(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  if (check_corners(b->in, begin, end) != AQR_OK)
+    atomic_store(&b->faulty, true);
 }
 
 static aqr_status check_input(builder* b)
 {
   const aqr_input* in = b->in;
+  aqr_status status = AQR_OK;
   if (in->number_of_points == 0 || in->number_of_triangles == 0)
     return AQR_EMPTY_INPUT;
   if (in->number_of_points >= AQR_SEAM / 3 || in->number_of_triangles >= AQR_SEAM / 6)
     return AQR_TOO_LARGE;
-  for (size_t i = 0; i < 3 * in->number_of_triangles; i++)
-  {
-    if (i % (1 << 20) == 0 && !aqr_step(b->c, 0))
-      return AQR_CANCELLED;
-    if (in->triangles[i] < 0 || (size_t)in->triangles[i] >= in->number_of_points)
-      return AQR_INDEX_OUT_OF_RANGE;
-    vec3 p = input_point(in, (size_t)in->triangles[i]);
-    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
-      return AQR_NON_FINITE_POINT;
-  }
+  AQR_TRY(aqr_parallel(b->c, 3 * in->number_of_triangles, look_for_faults, b, 0, 0));
+  if (b->faulty)
+    AQR_TRY(check_corners(in, 0, 3 * in->number_of_triangles)); /* the first fault is told */
   for (size_t i = 0; i < 2 * in->number_of_locked; i++)
-    if (in->locked[i] < 0 || (size_t)in->locked[i] >= in->number_of_points)
-      return AQR_INDEX_OUT_OF_RANGE;
-  return AQR_OK;
+    AQR_REQUIRE(is_inside(in, in->locked[i]), AQR_INDEX_OUT_OF_RANGE);
+done:
+  return status;
 }
 
 static uint64_t mix(uint64_t h, uint64_t x)
@@ -76,7 +97,7 @@ static bool same_point(vec3 a, vec3 b)
 static size_t find_place(const aqr_input* in, const aqr_index* table, size_t size, vec3 p)
 {
   size_t at = hash_point(p) & (size - 1);
-  while (table[at] != AQR_NONE && !same_point(input_point(in, table[at]), p))
+  while (table[at] != AQR_NONE && !same_point(aqr_input_point(in, table[at]), p))
     at = (at + 1) & (size - 1);
   return at;
 }
@@ -102,7 +123,7 @@ static aqr_status weld_points(builder* b)
     if (b->weld[v] != AQR_NONE)
       continue;
     used++;
-    size_t at = find_place(in, table, size, input_point(in, v));
+    size_t at = find_place(in, table, size, aqr_input_point(in, v));
     if (table[at] == AQR_NONE)
       table[at] = v;
     else
@@ -113,7 +134,7 @@ static aqr_status weld_points(builder* b)
   for (size_t i = 0; i < 2 * in->number_of_locked; i++)
   {
     aqr_index v = (aqr_index)in->locked[i];
-    vec3 p = input_point(in, v);
+    vec3 p = aqr_input_point(in, v);
     if (b->weld[v] == AQR_NONE && isfinite(p.x) && isfinite(p.y) && isfinite(p.z))
       b->weld[v] = table[find_place(in, table, size, p)];
   }
@@ -182,60 +203,76 @@ done:
   return status;
 }
 
-/* Numbers the points in use and scales them to a bounding box of diagonal 1 around the origin. */
-static aqr_status place_points(builder* b)
+static void mark_used(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  for (size_t i = begin; i < end; i++)
+    atomic_store_explicit(&b->used[b->s->corner[i]], true, memory_order_relaxed);
+}
+
+static void widen_box(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  vec3 low = v3(INFINITY, INFINITY, INFINITY), high = v3(-INFINITY, -INFINITY, -INFINITY);
+  for (size_t i = begin; i < end; i++)
+  {
+    if (!atomic_load_explicit(&b->used[i], memory_order_relaxed))
+      continue;
+    vec3 p = aqr_input_point(b->in, i);
+    low = v3(lesser(low.x, p.x), lesser(low.y, p.y), lesser(low.z, p.z));
+    high = v3(greater(high.x, p.x), greater(high.y, p.y), greater(high.z, p.z));
+  }
+  const double sides[6] = { high.x, high.y, high.z, -low.x, -low.y, -low.z };
+  for (unsigned k = 0; k < 6; k++)
+    aqr_shared_raise(&b->box[k], sides[k]);
+}
+
+/* Finds the centre and the diagonal of the points in use. */
+static aqr_status measure_box(builder* b)
 {
   aqr_surface* s = b->s;
-  size_t n_in = b->in->number_of_points;
+  size_t n = b->in->number_of_points;
   aqr_status status = AQR_OK;
-  aqr_index* id = AQR_NEW(b->c, aqr_index, n_in);
-  AQR_REQUIRE(id, AQR_OUT_OF_MEMORY);
-  memset(id, 0xff, n_in * sizeof *id);
-  for (size_t i = 0; i < 3 * s->n_faces; i++)
-    id[s->corner[i]] = 0;
-  size_t n = 0;
-  for (size_t i = 0; i < n_in; i++)
-    if (id[i] == 0)
-      id[i] = (aqr_index)n++;
-  AQR_REQUIRE(aqr_surface_reserve_points(b->c, s, n) && aqr_surface_reserve_origins(b->c, s, n), AQR_OUT_OF_MEMORY);
-  s->n_points = n;
-  AQR_REQUIRE(aqr_step(b->c, 0.23), AQR_CANCELLED);
-  double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
-  for (size_t i = 0; i < n_in; i++)
-  {
-    if (id[i] == AQR_NONE)
-      continue;
-    double* p = s->points + 3 * (size_t)id[i];
-    v3_store(p, input_point(b->in, i));
-    s->origin[id[i]] = (aqr_origin){ { (aqr_index)i, (aqr_index)i, (aqr_index)i }, { 1, 0, 0 }, AQR_NONE };
-    for (unsigned k = 0; k < 3; k++)
-    {
-      low[k] = fmin(low[k], p[k]);
-      high[k] = fmax(high[k], p[k]);
-    }
-  }
-  AQR_REQUIRE(aqr_step(b->c, 0.25), AQR_CANCELLED);
-  for (size_t i = 0; i < 3 * s->n_faces; i++)
-  {
-    s->corner[i] = id[s->corner[i]];
-    s->origin[s->corner[i]].triangle = s->source[i / 3];
-  }
-  /* halves and hypot, so that coordinates near the largest number do not overflow */
-  s->centre = v3(low[0] / 2 + high[0] / 2, low[1] / 2 + high[1] / 2, low[2] / 2 + high[2] / 2);
-  s->diagonal = 2 * hypot(hypot(high[0] / 2 - low[0] / 2, high[1] / 2 - low[1] / 2), high[2] / 2 - low[2] / 2);
-  AQR_REQUIRE(s->diagonal > 0 && isfinite(s->diagonal), AQR_DEGENERATE_INPUT);
-  AQR_REQUIRE(aqr_step(b->c, 0.28), AQR_CANCELLED);
-  double area = 0;
+  b->used = AQR_NEW(b->c, atomic_bool, n);
+  AQR_REQUIRE(b->used, AQR_OUT_OF_MEMORY);
   for (size_t i = 0; i < n; i++)
+    atomic_init(&b->used[i], false);
+  for (unsigned k = 0; k < 6; k++)
+    atomic_init(&b->box[k], -INFINITY);
+  AQR_TRY(aqr_parallel(b->c, 3 * s->n_faces, mark_used, b, 0.23, 0.25));
+  AQR_TRY(aqr_parallel(b->c, n, widen_box, b, 0.25, 0.28));
+  /* halves and hypot, so that coordinates near the largest number do not overflow */
+  double high[3], low[3];
+  for (unsigned k = 0; k < 3; k++)
   {
-    vec3 d = v3_sub(v3_load(s->points + 3 * i), s->centre);
-    v3_store(s->points + 3 * i, v3(d.x / s->diagonal, d.y / s->diagonal, d.z / s->diagonal));
+    high[k] = b->box[k] / 2;
+    low[k] = -b->box[k + 3] / 2;
   }
-  for (aqr_index f = 0; f < s->n_faces; f++)
-    area = fmax(area, v3_norm(aqr_face_cross(s, f)));
-  AQR_REQUIRE(area > 1e-14, AQR_DEGENERATE_INPUT); /* of a unit box: what rounding makes of a straight line */
+  s->centre = v3(low[0] + high[0], low[1] + high[1], low[2] + high[2]);
+  s->diagonal = 2 * hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+  AQR_REQUIRE(s->diagonal > 0 && isfinite(s->diagonal), AQR_DEGENERATE_INPUT);
 done:
-  AQR_DROP(b->c, id, n_in);
+  AQR_DROP(b->c, b->used, n);
+  return status;
+}
+
+static void measure_areas(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  double area = 0;
+  for (aqr_index f = (aqr_index)begin; f < end; f++)
+    area = greater(area, v3_norm(aqr_face_cross(b->s, f)));
+  aqr_shared_raise(&b->area, area);
+}
+
+/* At least one triangle must have an area: more, in a unit box, than rounding makes of a straight line. */
+static aqr_status check_areas(builder* b)
+{
+  aqr_status status = AQR_OK;
+  atomic_init(&b->area, 0);
+  AQR_TRY(aqr_parallel(b->c, b->s->n_faces, measure_areas, b, 0.36, 0.37));
+  AQR_REQUIRE(b->area > 1e-14, AQR_DEGENERATE_INPUT);
+done:
   return status;
 }
 
@@ -243,60 +280,69 @@ done:
 
 /* Half-edges of one undirected edge meet in the bucket of its smaller point. Two make neighbours, whatever their
  * direction; more are a non-manifold edge, at which all faces are cut apart. */
+static void pair_in_bucket(builder* b, aqr_index v)
+{
+  aqr_surface* s = b->s;
+  for (size_t i = b->first[v]; i < b->first[v + 1]; i++)
+  {
+    aqr_index h = b->in_bucket[i];
+    if (h == AQR_NONE)
+      continue;
+    aqr_index far = aqr_from(s, h) == v ? aqr_to(s, h) : aqr_from(s, h), other = AQR_NONE;
+    unsigned others = 0;
+    for (size_t j = i + 1; j < b->first[v + 1]; j++)
+    {
+      aqr_index k = b->in_bucket[j];
+      if (k == AQR_NONE || (aqr_from(s, k) != far && aqr_to(s, k) != far))
+        continue;
+      other = k;
+      others++;
+      b->in_bucket[j] = AQR_NONE;
+      s->twin[k] = AQR_NONE;
+    }
+    s->twin[h] = others == 1 ? other : AQR_NONE;
+    if (others == 1)
+      s->twin[other] = h;
+    if (others > 1)
+      atomic_fetch_add(&b->split_edges, 1);
+  }
+}
+
+static void pair_in_buckets(void* data, size_t begin, size_t end)
+{
+  for (size_t v = begin; v < end; v++)
+    pair_in_bucket(data, (aqr_index)v);
+}
+
+static aqr_index smaller_end(const aqr_index* corner, unsigned k)
+{
+  aqr_index p = corner[k], q = corner[k == 2 ? 0 : k + 1];
+  return p < q ? p : q;
+}
+
 static aqr_status pair_half_edges(builder* b)
 {
   aqr_surface* s = b->s;
-  size_t n = 3 * s->n_faces;
+  size_t n = 3 * s->n_faces, n_first = s->n_points + 2;
   aqr_status status = AQR_OK;
-  size_t* first = AQR_NEW0(b->c, size_t, s->n_points + 2);
-  aqr_index* in_bucket = AQR_NEW(b->c, aqr_index, n);
-  AQR_REQUIRE(first && in_bucket, AQR_OUT_OF_MEMORY);
+  b->first = AQR_NEW0(b->c, size_t, n_first);
+  b->in_bucket = AQR_NEW(b->c, aqr_index, n);
+  AQR_REQUIRE(b->first && b->in_bucket, AQR_OUT_OF_MEMORY);
   AQR_REQUIRE(aqr_step(b->c, 0.38), AQR_CANCELLED);
-  for (aqr_index h = 0; h < n; h++)
-  {
-    aqr_index p = aqr_from(s, h), q = aqr_to(s, h);
-    first[(p < q ? p : q) + 2]++;
-    s->twin[h] = AQR_NONE;
-  }
+  for (size_t i = 0; i < n; i += 3)
+    for (unsigned k = 0; k < 3; k++)
+      b->first[smaller_end(s->corner + i, k) + 2]++;
   for (size_t i = 1; i <= s->n_points; i++)
-    first[i + 1] += first[i];
+    b->first[i + 1] += b->first[i];
   AQR_REQUIRE(aqr_step(b->c, 0.39), AQR_CANCELLED);
-  for (aqr_index h = 0; h < n; h++)
-  {
-    aqr_index p = aqr_from(s, h), q = aqr_to(s, h);
-    in_bucket[first[(p < q ? p : q) + 1]++] = h;
-  }
-  for (size_t v = 0; v < s->n_points; v++)
-  {
-    if (v % 65536 == 0)
-      AQR_REQUIRE(aqr_step(b->c, 0.4), AQR_CANCELLED);
-    for (size_t i = first[v]; i < first[v + 1]; i++)
-    {
-      aqr_index h = in_bucket[i];
-      if (h == AQR_NONE)
-        continue;
-      aqr_index far = aqr_from(s, h) == v ? aqr_to(s, h) : aqr_from(s, h), other = AQR_NONE;
-      unsigned others = 0;
-      for (size_t j = i + 1; j < first[v + 1]; j++)
-      {
-        aqr_index k = in_bucket[j];
-        if (k == AQR_NONE || (aqr_from(s, k) != far && aqr_to(s, k) != far))
-          continue;
-        other = k;
-        others++;
-        in_bucket[j] = AQR_NONE;
-      }
-      b->report->split_edges += others > 1;
-      if (others == 1)
-      {
-        s->twin[h] = other;
-        s->twin[other] = h;
-      }
-    }
-  }
+  for (size_t i = 0; i < n; i += 3)
+    for (unsigned k = 0; k < 3; k++)
+      b->in_bucket[b->first[smaller_end(s->corner + i, k) + 1]++] = (aqr_index)(i + k);
+  AQR_TRY(aqr_parallel(b->c, s->n_points, pair_in_buckets, b, 0.4, 0.45));
+  b->report->split_edges = b->split_edges;
 done:
-  AQR_DROP(b->c, first, s->n_points + 2);
-  AQR_DROP(b->c, in_bucket, n);
+  AQR_DROP(b->c, b->first, n_first);
+  AQR_DROP(b->c, b->in_bucket, n);
   return status;
 }
 
@@ -546,8 +592,9 @@ aqr_status aqr_surface_build(
   AQR_TRY(check_input(&b));
   AQR_TRY(weld_points(&b));
   AQR_TRY(keep_triangles(&b));
-  AQR_TRY(place_points(&b));
-  AQR_TRY(aqr_surface_arrange(c, s));
+  AQR_TRY(measure_box(&b));
+  AQR_TRY(aqr_surface_arrange(c, input, s));
+  AQR_TRY(check_areas(&b));
   AQR_TRY(pair_half_edges(&b));
   AQR_TRY(orient(&b));
   AQR_TRY(split_points(&b));

@@ -100,8 +100,16 @@ static inline vec3 aqr_face_cross(const aqr_surface* s, aqr_index f)
 aqr_status aqr_surface_build(
   aqr_context* c, const aqr_input* input, double longest_edge, aqr_surface* s, aqr_report* report);
 
-/* Numbers faces and points along a space-filling curve (surface_order.c), before adjacency is known. */
-aqr_status aqr_surface_arrange(aqr_context* c, aqr_surface* s);
+static inline vec3 aqr_input_point(const aqr_input* in, size_t i)
+{
+  return in->points_f
+           ? v3((double)in->points_f[3 * i], (double)in->points_f[3 * i + 1], (double)in->points_f[3 * i + 2])
+           : v3_load(in->points_d + 3 * i);
+}
+
+/* Numbers faces and points along a space-filling curve and places the points (surface_order.c), before adjacency is
+ * known: centre and diagonal are set, and corners are input points still. */
+aqr_status aqr_surface_arrange(aqr_context* c, const aqr_input* input, aqr_surface* s);
 
 /* Finds the edges that input->locked asks for on the refined surface (surface_lock.c). weld: per input point the one it
  * was joined to, as in the origins. */

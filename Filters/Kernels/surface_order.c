@@ -41,61 +41,116 @@ static aqr_status sort_by_key(aqr_context* c, keyed* a, keyed* b, size_t n)
   return AQR_OK;
 }
 
-/* Moves the faces to the order given and numbers the points as the faces come to them. */
-static aqr_status renumber(aqr_context* c, aqr_surface* s, const keyed* order)
+/* From the faces as they come, whose corners are input points, to those in order. */
+typedef struct arrangement
 {
-  size_t n = s->n_faces, n_points = s->n_points;
-  aqr_status status = AQR_OK;
-  aqr_surface to = { 0 };
-  aqr_index* id = AQR_NEW(c, aqr_index, n_points);
-  AQR_REQUIRE(id && aqr_surface_reserve_faces(c, &to, n) && aqr_surface_reserve_points(c, &to, n_points) &&
-                aqr_surface_reserve_origins(c, &to, n_points),
-    AQR_OUT_OF_MEMORY);
-  memset(id, 0xff, n_points * sizeof *id);
-  for (size_t i = 0; i < n; i++)
+  const aqr_input* in;
+  const aqr_surface* from;
+  aqr_surface to;
+  keyed *order, *spare;
+  aqr_index* input_point; /* of each point in order */
+  aqr_index* last;        /* of its input triangles */
+} arrangement;
+
+static vec3 place(const arrangement* a, size_t input_point)
+{
+  vec3 d = v3_sub(aqr_input_point(a->in, input_point), a->from->centre);
+  double diagonal = a->from->diagonal;
+  return v3(d.x / diagonal, d.y / diagonal, d.z / diagonal);
+}
+
+static void find_keys(void* data, size_t begin, size_t end)
+{
+  arrangement* a = data;
+  for (size_t f = begin; f < end; f++)
+    a->order[f] = (keyed){ aqr_morton(place(a, a->from->corner[3 * f])), (aqr_index)f };
+}
+
+static void move_faces(void* data, size_t begin, size_t end)
+{
+  arrangement* a = data;
+  for (size_t i = begin; i < end; i++)
   {
-    if (i % 65536 == 0)
-      AQR_REQUIRE(aqr_step(c, 0.35), AQR_CANCELLED);
-    size_t f = order[i].face;
-    to.source[i] = s->source[f];
-    for (unsigned k = 0; k < 3; k++)
-    {
-      size_t v = s->corner[3 * f + k];
-      if (id[v] == AQR_NONE)
-      {
-        id[v] = (aqr_index)to.n_points++;
-        memcpy(to.points + 3 * (size_t)id[v], s->points + 3 * v, 3 * sizeof *s->points);
-        to.origin[id[v]] = s->origin[v];
-      }
-      to.corner[3 * i + k] = id[v];
-    }
+    size_t f = a->order[i].face;
+    a->to.source[i] = a->from->source[f];
+    memcpy(a->to.corner + 3 * i, a->from->corner + 3 * f, 3 * sizeof *a->to.corner);
   }
-  to.n_faces = n;
-  to.centre = s->centre;
-  to.diagonal = s->diagonal;
-  aqr_surface swap = *s;
-  *s = to;
-  to = swap;
+}
+
+/* Numbers the points as the faces come to them. */
+static aqr_status number_points(aqr_context* c, arrangement* a)
+{
+  size_t n_in = a->in->number_of_points, n = 0;
+  aqr_status status = AQR_OK;
+  aqr_index* id = AQR_NEW(c, aqr_index, n_in);
+  AQR_REQUIRE(id, AQR_OUT_OF_MEMORY);
+  memset(id, 0xff, n_in * sizeof *id);
+  for (size_t i = 0; i < 3 * a->to.n_faces; i++)
+  {
+    if (i % (1 << 18) == 0)
+      AQR_REQUIRE(aqr_step(c, 0.35), AQR_CANCELLED);
+    aqr_index v = a->to.corner[i], triangle = a->to.source[i / 3];
+    if (id[v] == AQR_NONE)
+    {
+      id[v] = (aqr_index)n;
+      a->input_point[n] = v;
+      a->last[n++] = triangle;
+    }
+    aqr_index* last = &a->last[id[v]];
+    *last = *last < triangle ? triangle : *last;
+    a->to.corner[i] = id[v];
+  }
+  a->to.n_points = n;
 done:
-  aqr_surface_free(c, &to);
-  AQR_DROP(c, id, n_points);
+  AQR_DROP(c, id, n_in);
   return status;
 }
 
-aqr_status aqr_surface_arrange(aqr_context* c, aqr_surface* s)
+static void place_points(void* data, size_t begin, size_t end)
 {
-  size_t n = s->n_faces;
+  arrangement* a = data;
+  for (size_t i = begin; i < end; i++)
+  {
+    aqr_index p = a->input_point[i];
+    v3_store(a->to.points + 3 * i, place(a, p));
+    a->to.origin[i] = (aqr_origin){ { p, p, p }, { 1, 0, 0 }, a->last[i] };
+  }
+}
+
+aqr_status aqr_surface_arrange(aqr_context* c, const aqr_input* input, aqr_surface* s)
+{
+  size_t n = s->n_faces, n_in = input->number_of_points;
   aqr_status status = AQR_OK;
-  keyed *order = AQR_NEW(c, keyed, n), *spare = AQR_NEW(c, keyed, n);
-  AQR_REQUIRE(order && spare, AQR_OUT_OF_MEMORY);
-  for (size_t f = 0; f < n; f++)
-    order[f] = (keyed){ aqr_morton(aqr_point(s, s->corner[3 * f])), (aqr_index)f };
-  AQR_TRY(sort_by_key(c, order, spare, n));
-  AQR_DROP(c, order, n);
-  AQR_TRY(renumber(c, s, spare));
+  arrangement a = { .in = input, .from = s, .order = AQR_NEW(c, keyed, n), .spare = AQR_NEW(c, keyed, n) };
+  AQR_REQUIRE(a.order && a.spare && aqr_surface_reserve_faces(c, &a.to, n), AQR_OUT_OF_MEMORY);
+  a.to.n_faces = n;
+  a.to.centre = s->centre;
+  a.to.diagonal = s->diagonal;
+  AQR_TRY(aqr_parallel(c, n, find_keys, &a, 0.28, 0.3));
+  AQR_TRY(sort_by_key(c, a.order, a.spare, n));
+  keyed* sorted = a.spare;
+  a.spare = a.order;
+  a.order = sorted;
+  AQR_DROP(c, a.spare, n);
+  AQR_TRY(aqr_parallel(c, n, move_faces, &a, 0.33, 0.35));
+  AQR_DROP(c, a.order, n);
+  a.input_point = AQR_NEW(c, aqr_index, n_in);
+  a.last = AQR_NEW(c, aqr_index, n_in);
+  AQR_REQUIRE(a.input_point && a.last, AQR_OUT_OF_MEMORY);
+  AQR_TRY(number_points(c, &a));
+  AQR_REQUIRE(aqr_surface_reserve_points(c, &a.to, a.to.n_points) &&
+                aqr_surface_reserve_origins(c, &a.to, a.to.n_points),
+    AQR_OUT_OF_MEMORY);
+  AQR_TRY(aqr_parallel(c, a.to.n_points, place_points, &a, 0.35, 0.36));
+  aqr_surface swap = *s;
+  *s = a.to;
+  a.to = swap;
 done:
-  AQR_DROP(c, order, n);
-  AQR_DROP(c, spare, n);
+  AQR_DROP(c, a.order, n);
+  AQR_DROP(c, a.spare, n);
+  AQR_DROP(c, a.input_point, n_in);
+  AQR_DROP(c, a.last, n_in);
+  aqr_surface_free(c, &a.to);
   return status;
 }
 

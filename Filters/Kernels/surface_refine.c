@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Paper 3.2: dense meshes with a few very large faces are split beforehand. */
+#include "shared.h"
 #include "surface.h"
 
 #include <string.h>
@@ -20,6 +21,7 @@ typedef struct refiner
   aqr_surface* s;
   aqr_index* list; /* half-edges longer than wanted, one per edge */
   size_t n, capacity;
+  aqr_shared_double longest2; /* squared length of the longest edge at the start */
 } refiner;
 
 static double length2(const aqr_surface* s, aqr_index h)
@@ -103,18 +105,34 @@ static bool split_edge(refiner* r, aqr_index h)
   return true;
 }
 
+static void find_longest(void* data, size_t begin, size_t end)
+{
+  refiner* r = data;
+  double longest2 = 0;
+  for (aqr_index h = (aqr_index)begin; h < end; h++)
+    longest2 = greater(longest2, length2(r->s, h));
+  aqr_shared_raise(&r->longest2, longest2);
+}
+
+static aqr_status list_long_edges(refiner* r, double least2)
+{
+  const aqr_surface* s = r->s;
+  for (aqr_index h = 0; h < 3 * s->n_faces; h++)
+    if ((s->twin[h] == AQR_NONE || h < s->twin[h]) && !listed(r, h, least2))
+      return AQR_OUT_OF_MEMORY;
+  return AQR_OK;
+}
+
 aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edge, size_t* added)
 {
   refiner r = { .c = c, .s = s };
   aqr_status status = AQR_OK;
   size_t before = s->n_points, limit = most_growth * s->n_faces + free_faces;
-  double least2 = longest_edge * longest_edge, longest2 = 0;
-  for (aqr_index h = 0; h < 3 * s->n_faces; h++)
-  {
-    if (s->twin[h] == AQR_NONE || h < s->twin[h])
-      AQR_REQUIRE(listed(&r, h, least2), AQR_OUT_OF_MEMORY);
-    longest2 = fmax(longest2, length2(s, h));
-  }
+  double least2 = longest_edge * longest_edge;
+  AQR_TRY(aqr_parallel(c, 3 * s->n_faces, find_longest, &r, 0.85, 0.9));
+  double longest2 = r.longest2;
+  if (longest2 > least2)
+    AQR_TRY(list_long_edges(&r, least2));
   for (int round = 0; round < most_rounds && r.n; round++)
   {
     AQR_REQUIRE(aqr_step(c, 0.9), AQR_CANCELLED);
