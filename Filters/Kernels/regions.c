@@ -3,8 +3,8 @@
 #include "regions.h"
 
 #include "face_layout.h"
+#include "shared.h"
 
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,8 +24,6 @@ typedef struct slot
   aqr_index first[4], end;
 } slot;
 
-/* What threads write to without waiting for each other. */
-typedef _Atomic(aqr_index) shared_index;
 typedef _Atomic(int32_t) shared_number;
 typedef _Atomic(uint8_t) shared_flag;
 
@@ -37,7 +35,7 @@ typedef struct regions
   const aqr_network* net;
   aqr_lines* lines;
   /* Shared by threads; whatever their order, a root is the least item of its region and sums are the same. */
-  shared_index* parent; /* union-find over items: faces without chords, then loops */
+  aqr_shared_index* parent; /* union-find over items: faces without chords, then loops */
   size_t n_items;
   shared_number* euler;  /* per item, and of its whole region per root when all is counted */
   shared_flag* bordered; /* as euler: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
@@ -71,36 +69,14 @@ typedef struct regions
 
 /* ---- items ---- */
 
-static aqr_index above(const regions* r, aqr_index i)
-{
-  return atomic_load_explicit(&r->parent[i], memory_order_relaxed);
-}
-
 static aqr_index find(const regions* r, aqr_index i)
 {
-  for (;;)
-  {
-    aqr_index a = above(r, i), b = above(r, a);
-    if (a == b)
-      return a;
-    atomic_store_explicit(&r->parent[i], b, memory_order_relaxed); /* whoever else does that stores an ancestor too */
-    i = b;
-  }
+  return aqr_root(r->parent, i);
 }
 
 static void unite(const regions* r, aqr_index a, aqr_index b)
 {
-  for (;;)
-  {
-    a = find(r, a);
-    b = find(r, b);
-    if (a == b)
-      return;
-    aqr_index high = a > b ? a : b, low = a > b ? b : a;
-    if (atomic_compare_exchange_strong_explicit(
-          &r->parent[high], &(aqr_index){ high }, low, memory_order_relaxed, memory_order_relaxed))
-      return;
-  }
+  aqr_unite(r->parent, a, b);
 }
 
 static void add_euler(const regions* r, aqr_index item, int32_t more)
@@ -857,7 +833,7 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   *added = 0;
   r.n_items = s->n_faces + net->n_loops;
   r.start = AQR_NEW(c, aqr_index, 3 * s->n_faces);
-  r.parent = AQR_NEW(c, shared_index, r.n_items);
+  r.parent = AQR_NEW(c, aqr_shared_index, r.n_items);
   r.euler = AQR_NEW(c, shared_number, r.n_items);
   r.bordered = AQR_NEW(c, shared_flag, r.n_items);
   r.picked = AQR_NEW0(c, uint8_t, s->n_faces);
@@ -866,7 +842,7 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   AQR_TRY(count(&r));
   bool any = false;
   for (aqr_index i = 0; cut && i < r.n_items && !any; i++)
-    any = above(&r, i) == i && needs_cut(&r, i);
+    any = aqr_above(r.parent, i) == i && needs_cut(&r, i);
   if (any)
   {
     AQR_TRY(list_cells(&r));

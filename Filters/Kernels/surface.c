@@ -21,6 +21,10 @@ typedef struct builder
   size_t* first;            /* per point: where its bucket begins */
   aqr_index* in_bucket;     /* half-edges by their smaller point */
   aqr_shared_size split_edges;
+  atomic_bool disagree;     /* some neighbours */
+  aqr_shared_index* parent; /* sets of faces: components */
+  aqr_shared_size components;
+  aqr_shared_size in_fans; /* half-edges */
 } builder;
 
 static bool is_inside(const aqr_input* in, int64_t i)
@@ -278,6 +282,11 @@ done:
 
 /* ---- adjacency ---- */
 
+static bool runs_against(const aqr_surface* s, aqr_index h, aqr_index t)
+{
+  return aqr_from(s, h) == aqr_to(s, t);
+}
+
 /* Half-edges of one undirected edge meet in the bucket of its smaller point. Two make neighbours, whatever their
  * direction; more are a non-manifold edge, at which all faces are cut apart. */
 static void pair_in_bucket(builder* b, aqr_index v)
@@ -302,7 +311,11 @@ static void pair_in_bucket(builder* b, aqr_index v)
     }
     s->twin[h] = others == 1 ? other : AQR_NONE;
     if (others == 1)
+    {
       s->twin[other] = h;
+      if (!runs_against(s, h, other))
+        atomic_store_explicit(&b->disagree, true, memory_order_relaxed);
+    }
     if (others > 1)
       atomic_fetch_add(&b->split_edges, 1);
   }
@@ -346,16 +359,50 @@ done:
   return status;
 }
 
-static bool runs_against(const aqr_surface* s, aqr_index h, aqr_index t)
-{
-  return aqr_from(s, h) == aqr_to(s, t);
-}
-
 /* Half-edge h after its face was turned over. */
 static aqr_index turned(aqr_index h, const uint8_t* turn)
 {
   static const aqr_index to[3] = { 2, 1, 0 };
   return turn[h / 3] ? 3 * (h / 3) + to[h % 3] : h;
+}
+
+static void begin_components(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  for (size_t f = begin; f < end; f++)
+    atomic_init(&b->parent[f], (aqr_index)f);
+}
+
+static void unite_neighbours(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  for (aqr_index h = (aqr_index)begin; h < end; h++)
+    if (b->s->twin[h] < h)
+      aqr_unite(b->parent, h / 3, b->s->twin[h] / 3);
+}
+
+static void count_roots(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  size_t n = 0;
+  for (aqr_index f = (aqr_index)begin; f < end; f++)
+    n += aqr_above(b->parent, f) == f;
+  b->components += n;
+}
+
+static aqr_status count_components(builder* b)
+{
+  size_t n = b->s->n_faces;
+  aqr_status status = AQR_OK;
+  b->parent = AQR_NEW(b->c, aqr_shared_index, n);
+  AQR_REQUIRE(b->parent, AQR_OUT_OF_MEMORY);
+  AQR_TRY(aqr_parallel(b->c, n, begin_components, b, 0.45, 0.46));
+  AQR_TRY(aqr_parallel(b->c, 3 * n, unite_neighbours, b, 0.46, 0.54));
+  AQR_TRY(aqr_parallel(b->c, n, count_roots, b, 0.54, 0.55));
+  b->report->components = b->components;
+done:
+  AQR_DROP(b->c, b->parent, n);
+  return status;
 }
 
 /* Turns faces so that neighbours agree; in each component the side that most faces had wins. Edges over which no choice
@@ -442,6 +489,19 @@ typedef struct copies
   size_t n, capacity;
 } copies;
 
+/* The clockwise-most half-edge of the fan that h is in; h where the fan closes. */
+static aqr_index fan_start(const aqr_surface* s, aqr_index h)
+{
+  aqr_index start = h;
+  for (aqr_index t = aqr_twin(s, start); t != AQR_NONE; t = aqr_twin(s, start))
+  {
+    start = aqr_next(t);
+    if (start == h)
+      break;
+  }
+  return start;
+}
+
 /* Gives every fan of faces around a point a point of its own (the first keeps it), and every point its clockwise-most
  * outgoing half-edge. Coordinates are copied, what else belongs to a point is the caller's. */
 static aqr_status split_fans(aqr_context* c, aqr_surface* s, copies* added)
@@ -458,13 +518,7 @@ static aqr_status split_fans(aqr_context* c, aqr_surface* s, copies* added)
       AQR_REQUIRE(aqr_step(c, 0.7), AQR_CANCELLED);
     if (seen[h])
       continue;
-    aqr_index v = s->corner[h], start = h, id = v;
-    for (aqr_index t = aqr_twin(s, start); t != AQR_NONE; t = aqr_twin(s, start))
-    {
-      start = aqr_next(t);
-      if (start == h)
-        break;
-    }
+    aqr_index v = s->corner[h], start = fan_start(s, h), id = v;
     if (claimed[v])
     {
       AQR_REQUIRE(AQR_RESERVE(c, added->of, added->capacity, added->n + 1) &&
@@ -505,12 +559,35 @@ done:
   return status;
 }
 
+static void begin_fans(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  aqr_surface* s = b->s;
+  size_t n = 0;
+  for (size_t v = begin; v < end; v++)
+  {
+    aqr_index h = s->fan[v] = fan_start(s, s->fan[v]);
+    do
+    {
+      n++;
+      h = aqr_next_around(s, h);
+    } while (h != AQR_NONE && h != s->fan[v]);
+  }
+  b->in_fans += n;
+}
+
 static aqr_status split_points(builder* b)
 {
   aqr_surface* s = b->s;
   copies added = { 0 };
   aqr_status status = AQR_OK;
   size_t old = s->n_points;
+  if (!b->disagree) /* no face has been turned: the first half-edges of points are still so */
+  {
+    AQR_TRY(aqr_parallel(b->c, s->n_points, begin_fans, b, 0.6, 0.7));
+    if (b->in_fans == 3 * s->n_faces) /* every point has one fan */
+      return AQR_OK;
+  }
   AQR_TRY(split_fans(b->c, s, &added));
   b->report->split_points = added.n;
   AQR_REQUIRE(aqr_surface_reserve_origins(b->c, s, s->n_points), AQR_OUT_OF_MEMORY);
@@ -596,7 +673,7 @@ aqr_status aqr_surface_build(
   AQR_TRY(aqr_surface_arrange(c, input, s));
   AQR_TRY(check_areas(&b));
   AQR_TRY(pair_half_edges(&b));
-  AQR_TRY(orient(&b));
+  AQR_TRY(b.disagree ? orient(&b) : count_components(&b));
   AQR_TRY(split_points(&b));
   AQR_TRY(close_loops(&b));
   AQR_TRY(aqr_surface_refine(c, s, longest_edge, &report->refined_points));

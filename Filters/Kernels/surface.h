@@ -108,7 +108,8 @@ static inline vec3 aqr_input_point(const aqr_input* in, size_t i)
 }
 
 /* Numbers faces and points along a space-filling curve and places the points (surface_order.c), before adjacency is
- * known: centre and diagonal are set, and corners are input points still. */
+ * known: centre and diagonal are set, and corners are input points still. The fan of each point is set to the first of
+ * its half-edges. */
 aqr_status aqr_surface_arrange(aqr_context* c, const aqr_input* input, aqr_surface* s);
 
 /* Finds the edges that input->locked asks for on the refined surface (surface_lock.c). weld: per input point the one it

@@ -49,6 +49,7 @@ typedef struct arrangement
   aqr_surface to;
   keyed *order, *spare;
   aqr_index* input_point; /* of each point in order */
+  aqr_index* first;       /* of its half-edges */
   aqr_index* last;        /* of its input triangles */
 } arrangement;
 
@@ -94,6 +95,7 @@ static aqr_status number_points(aqr_context* c, arrangement* a)
     {
       id[v] = (aqr_index)n;
       a->input_point[n] = v;
+      a->first[n] = (aqr_index)i;
       a->last[n++] = triangle;
     }
     aqr_index* last = &a->last[id[v]];
@@ -113,6 +115,7 @@ static void place_points(void* data, size_t begin, size_t end)
   {
     aqr_index p = a->input_point[i];
     v3_store(a->to.points + 3 * i, place(a, p));
+    a->to.fan[i] = a->first[i];
     a->to.origin[i] = (aqr_origin){ { p, p, p }, { 1, 0, 0 }, a->last[i] };
   }
 }
@@ -135,8 +138,9 @@ aqr_status aqr_surface_arrange(aqr_context* c, const aqr_input* input, aqr_surfa
   AQR_TRY(aqr_parallel(c, n, move_faces, &a, 0.33, 0.35));
   AQR_DROP(c, a.order, n);
   a.input_point = AQR_NEW(c, aqr_index, n_in);
+  a.first = AQR_NEW(c, aqr_index, n_in);
   a.last = AQR_NEW(c, aqr_index, n_in);
-  AQR_REQUIRE(a.input_point && a.last, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(a.input_point && a.first && a.last, AQR_OUT_OF_MEMORY);
   AQR_TRY(number_points(c, &a));
   AQR_REQUIRE(aqr_surface_reserve_points(c, &a.to, a.to.n_points) &&
                 aqr_surface_reserve_origins(c, &a.to, a.to.n_points),
@@ -149,6 +153,7 @@ done:
   AQR_DROP(c, a.order, n);
   AQR_DROP(c, a.spare, n);
   AQR_DROP(c, a.input_point, n_in);
+  AQR_DROP(c, a.first, n_in);
   AQR_DROP(c, a.last, n_in);
   aqr_surface_free(c, &a.to);
   return status;
