@@ -20,6 +20,14 @@ static inline void aqr_shared_raise(aqr_shared_double* at, double x)
          !atomic_compare_exchange_weak_explicit(at, &now, x, memory_order_relaxed, memory_order_relaxed))
     ;
 }
+/* Lowers it to x where it is more. */
+static inline void aqr_shared_lower(aqr_shared_index* at, aqr_index x)
+{
+  aqr_index now = atomic_load_explicit(at, memory_order_relaxed);
+  while (now > x &&
+         !atomic_compare_exchange_weak_explicit(at, &now, x, memory_order_relaxed, memory_order_relaxed))
+    ;
+}
 
 /* ---- sets of items: each names one above it in its set, the root, which is the least, itself ---- */
 

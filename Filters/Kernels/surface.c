@@ -15,12 +15,17 @@ typedef struct builder
   aqr_report* report;
   aqr_index* weld;     /* per input point: the input point it was joined to */
   atomic_bool faulty;  /* some corner of the input */
+  aqr_shared_index* table; /* of points by their coordinates */
+  size_t table_size;
+  aqr_shared_index* first_use; /* per input point: the first corner of a triangle that it is, or AQR_NONE */
+  aqr_shared_size used_points, merged_points;
   atomic_bool* used;   /* per input point: by a triangle */
   aqr_shared_double box[6]; /* of the points in use: their highest coordinates, and the negatives of the lowest */
   aqr_shared_double area;   /* of the largest parallelogram that two sides of a triangle span */
   size_t* first;            /* per point: where its bucket begins */
   aqr_index* in_bucket;     /* half-edges by their smaller point */
   aqr_shared_size split_edges;
+  atomic_bool may_repeat;   /* a triangle may have the points of another */
   atomic_bool disagree;     /* some neighbours */
   aqr_shared_index* parent; /* sets of faces: components */
   aqr_shared_size components;
@@ -76,12 +81,9 @@ static uint64_t mix(uint64_t h, uint64_t x)
   return h ^ (h >> 29);
 }
 
-static uint64_t hash_point(vec3 p)
+static bool same_point(vec3 a, vec3 b)
 {
-  uint64_t bits[3];
-  double q[3] = { p.x + 0.0, p.y + 0.0, p.z + 0.0 }; /* one zero, not two */
-  memcpy(bits, q, sizeof bits);
-  return mix(mix(mix(0, bits[0]), bits[1]), bits[2]);
+  return !(a.x < b.x || a.x > b.x || a.y < b.y || a.y > b.y || a.z < b.z || a.z > b.z);
 }
 
 static size_t table_size(size_t n)
@@ -92,59 +94,127 @@ static size_t table_size(size_t n)
   return size;
 }
 
-static bool same_point(vec3 a, vec3 b)
+/* ---- points ---- */
+
+static uint64_t hash_point(vec3 p)
 {
-  return !(a.x < b.x || a.x > b.x || a.y < b.y || a.y > b.y || a.z < b.z || a.z > b.z);
+  uint64_t bits[3];
+  double q[3] = { p.x + 0.0, p.y + 0.0, p.z + 0.0 }; /* one zero, not two */
+  memcpy(bits, q, sizeof bits);
+  return mix(mix(mix(0, bits[0]), bits[1]), bits[2]);
+}
+
+static aqr_index at_place(const builder* b, size_t at)
+{
+  return atomic_load_explicit(&b->table[at], memory_order_relaxed);
 }
 
 /* The place in the table of a point with the same coordinates, or the free one where it would be. */
-static size_t find_place(const aqr_input* in, const aqr_index* table, size_t size, vec3 p)
+static size_t find_place(const builder* b, vec3 p)
 {
-  size_t at = hash_point(p) & (size - 1);
-  while (table[at] != AQR_NONE && !same_point(aqr_input_point(in, table[at]), p))
-    at = (at + 1) & (size - 1);
+  size_t at = hash_point(p) & (b->table_size - 1);
+  for (aqr_index v = at_place(b, at); v != AQR_NONE && !same_point(aqr_input_point(b->in, v), p); v = at_place(b, at))
+    at = (at + 1) & (b->table_size - 1);
   return at;
 }
 
-/* Joins points with the same coordinates to the first of them; points that neither a triangle nor a locked edge uses
- * stay AQR_NONE. */
+/* Enters a point; false where there is one with the same coordinates. Of these the first that is used stays in the end,
+ * in whatever order threads enter them. */
+static bool enter_point(builder* b, aqr_index v)
+{
+  vec3 p = aqr_input_point(b->in, v);
+  for (;;)
+  {
+    size_t at = find_place(b, p);
+    aqr_index there = AQR_NONE;
+    if (atomic_compare_exchange_strong_explicit(&b->table[at], &there, v, memory_order_relaxed, memory_order_relaxed))
+      return true;
+    if (!same_point(aqr_input_point(b->in, there), p)) /* another thread took the place meanwhile */
+      continue;
+    while (b->first_use[v] < b->first_use[there] && !atomic_compare_exchange_weak_explicit(&b->table[at], &there, v,
+                                                      memory_order_relaxed, memory_order_relaxed))
+      ;
+    return false;
+  }
+}
+
+static void empty_table(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  for (size_t i = begin; i < end; i++)
+    atomic_init(&b->table[i], AQR_NONE);
+}
+
+static void begin_points(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  for (size_t v = begin; v < end; v++)
+    atomic_init(&b->first_use[v], AQR_NONE);
+}
+
+static void find_first_uses(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  for (size_t i = begin; i < end; i++)
+    aqr_shared_lower(&b->first_use[b->in->triangles[i]], (aqr_index)i);
+}
+
+static void enter_points(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  size_t used = 0, merged = 0;
+  for (aqr_index v = (aqr_index)begin; v < end; v++)
+    if (b->first_use[v] != AQR_NONE)
+    {
+      used++;
+      merged += !enter_point(b, v);
+    }
+  b->used_points += used;
+  b->merged_points += merged;
+}
+
+static void weld(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  for (aqr_index v = (aqr_index)begin; v < end; v++)
+    b->weld[v] = b->first_use[v] == AQR_NONE ? AQR_NONE
+                 : b->merged_points          ? at_place(b, find_place(b, aqr_input_point(b->in, v)))
+                                             : v;
+}
+
+/* Joins points with the same coordinates to the first of them that a triangle uses; points that neither a triangle nor
+ * a locked edge uses stay AQR_NONE. */
 static aqr_status weld_points(builder* b)
 {
   const aqr_input* in = b->in;
-  size_t n = in->number_of_points, size = table_size(n), used = 0;
-  aqr_index* table = AQR_NEW(b->c, aqr_index, size);
+  size_t n = in->number_of_points;
+  aqr_status status = AQR_OK;
+  b->table_size = table_size(n);
+  b->table = AQR_NEW(b->c, aqr_shared_index, b->table_size);
   b->weld = AQR_NEW(b->c, aqr_index, n);
-  if (!table || !b->weld)
-  {
-    AQR_DROP(b->c, table, size);
-    return AQR_OUT_OF_MEMORY;
-  }
-  memset(table, 0xff, size * sizeof *table);
-  memset(b->weld, 0xff, n * sizeof *b->weld);
-  for (size_t i = 0; i < 3 * in->number_of_triangles; i++)
-  {
-    aqr_index v = (aqr_index)in->triangles[i];
-    if (b->weld[v] != AQR_NONE)
-      continue;
-    used++;
-    size_t at = find_place(in, table, size, aqr_input_point(in, v));
-    if (table[at] == AQR_NONE)
-      table[at] = v;
-    else
-      b->report->merged_points++;
-    b->weld[v] = table[at];
-  }
-  b->report->unused_points = n - used;
+  b->first_use = AQR_NEW(b->c, aqr_shared_index, n);
+  AQR_REQUIRE(b->table && b->weld && b->first_use, AQR_OUT_OF_MEMORY);
+  AQR_TRY(aqr_parallel(b->c, b->table_size, empty_table, b, 0.1, 0.1));
+  AQR_TRY(aqr_parallel(b->c, n, begin_points, b, 0.1, 0.1));
+  AQR_TRY(aqr_parallel(b->c, 3 * in->number_of_triangles, find_first_uses, b, 0.1, 0.12));
+  AQR_TRY(aqr_parallel(b->c, n, enter_points, b, 0.12, 0.15));
+  AQR_TRY(aqr_parallel(b->c, n, weld, b, 0.15, 0.15));
+  b->report->unused_points = n - b->used_points;
+  b->report->merged_points = b->merged_points;
   for (size_t i = 0; i < 2 * in->number_of_locked; i++)
   {
     aqr_index v = (aqr_index)in->locked[i];
     vec3 p = aqr_input_point(in, v);
     if (b->weld[v] == AQR_NONE && isfinite(p.x) && isfinite(p.y) && isfinite(p.z))
-      b->weld[v] = table[find_place(in, table, size, p)];
+      b->weld[v] = at_place(b, find_place(b, p));
   }
-  AQR_DROP(b->c, table, size);
-  return AQR_OK;
+done:
+  AQR_DROP(b->c, b->table, b->table_size);
+  AQR_DROP(b->c, b->first_use, n);
+  return status;
 }
+
+/* ---- triangles ---- */
 
 static void sort3(aqr_index* k)
 {
@@ -160,29 +230,23 @@ static void sort3(aqr_index* k)
   }
 }
 
-/* Keeps the triangles with three different points, each set of points once; corners are input points still. */
-static aqr_status keep_triangles(builder* b)
+/* Of triangles with the same points all but the first lose their source. */
+static aqr_status drop_duplicates(builder* b)
 {
-  const aqr_input* in = b->in;
   aqr_surface* s = b->s;
-  size_t n = in->number_of_triangles, size = table_size(n);
+  size_t n = b->in->number_of_triangles, size = table_size(n);
   aqr_index* table = AQR_NEW(b->c, aqr_index, size);
   aqr_status status = AQR_OK;
-  AQR_REQUIRE(table && aqr_surface_reserve_faces(b->c, s, n), AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(table, AQR_OUT_OF_MEMORY);
   memset(table, 0xff, size * sizeof *table);
-  for (size_t i = 0; i < n; i++)
+  for (size_t f = 0; f < n; f++)
   {
-    if (i % (1 << 18) == 0)
+    if (f % (1 << 18) == 0)
       AQR_REQUIRE(aqr_step(b->c, 0.2), AQR_CANCELLED);
-    aqr_index* corner = s->corner + 3 * s->n_faces;
-    for (unsigned k = 0; k < 3; k++)
-      corner[k] = b->weld[in->triangles[3 * i + k]];
-    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
-    {
-      b->report->degenerate_triangles++;
+    if (s->source[f] == AQR_NONE)
       continue;
-    }
-    aqr_index key[3] = { corner[0], corner[1], corner[2] };
+    aqr_index key[3];
+    memcpy(key, s->corner + 3 * f, sizeof key);
     sort3(key);
     size_t at = mix(mix(mix(0, key[0]), key[1]), key[2]) & (size - 1);
     for (; table[at] != AQR_NONE; at = (at + 1) & (size - 1))
@@ -193,19 +257,59 @@ static aqr_status keep_triangles(builder* b)
       if (memcmp(key, other, sizeof key) == 0)
         break;
     }
-    if (table[at] != AQR_NONE)
+    if (table[at] == AQR_NONE)
+      table[at] = (aqr_index)f;
+    else
     {
+      s->source[f] = AQR_NONE;
       b->report->duplicate_triangles++;
-      continue;
     }
-    table[at] = (aqr_index)s->n_faces;
-    s->source[s->n_faces++] = (aqr_index)i;
   }
-  AQR_REQUIRE(s->n_faces > 0, AQR_DEGENERATE_INPUT);
 done:
   AQR_DROP(b->c, table, size);
   return status;
 }
+
+/* Takes the corners of triangles from the input; those without three different points get no source. */
+static void take_triangles(void* data, size_t begin, size_t end)
+{
+  builder* b = data;
+  aqr_surface* s = b->s;
+  for (size_t f = begin; f < end; f++)
+  {
+    aqr_index* corner = s->corner + 3 * f;
+    for (unsigned k = 0; k < 3; k++)
+      corner[k] = b->weld[b->in->triangles[3 * f + k]];
+    bool flat = corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
+    s->source[f] = flat ? AQR_NONE : (aqr_index)f;
+  }
+}
+
+/* Keeps the triangles with three different points, on request each set of points once; corners are input points
+ * still. */
+static aqr_status keep_triangles(builder* b, bool unique)
+{
+  aqr_surface* s = b->s;
+  size_t n = b->in->number_of_triangles;
+  aqr_status status = AQR_OK;
+  s->n_faces = 0;
+  AQR_REQUIRE(aqr_surface_reserve_faces(b->c, s, n), AQR_OUT_OF_MEMORY);
+  AQR_TRY(aqr_parallel(b->c, n, take_triangles, b, 0.15, 0.2));
+  if (unique)
+    AQR_TRY(drop_duplicates(b));
+  for (size_t f = 0; f < n; f++)
+    if (s->source[f] != AQR_NONE)
+    {
+      s->source[s->n_faces] = s->source[f];
+      memmove(s->corner + 3 * s->n_faces++, s->corner + 3 * f, 3 * sizeof *s->corner);
+    }
+  b->report->degenerate_triangles = n - b->report->duplicate_triangles - s->n_faces;
+  AQR_REQUIRE(s->n_faces > 0, AQR_DEGENERATE_INPUT);
+done:
+  return status;
+}
+
+/* ---- the box of the points in use ---- */
 
 static void mark_used(void* data, size_t begin, size_t end)
 {
@@ -287,6 +391,11 @@ static bool runs_against(const aqr_surface* s, aqr_index h, aqr_index t)
   return aqr_from(s, h) == aqr_to(s, t);
 }
 
+static aqr_index opposite(const aqr_surface* s, aqr_index h)
+{
+  return aqr_from(s, aqr_prev(h));
+}
+
 /* Half-edges of one undirected edge meet in the bucket of its smaller point. Two make neighbours, whatever their
  * direction; more are a non-manifold edge, at which all faces are cut apart. */
 static void pair_in_bucket(builder* b, aqr_index v)
@@ -317,7 +426,9 @@ static void pair_in_bucket(builder* b, aqr_index v)
         atomic_store_explicit(&b->disagree, true, memory_order_relaxed);
     }
     if (others > 1)
-      atomic_fetch_add(&b->split_edges, 1);
+      atomic_fetch_add_explicit(&b->split_edges, 1, memory_order_relaxed);
+    if (others > 1 || (others == 1 && opposite(s, other) == opposite(s, h)))
+      atomic_store_explicit(&b->may_repeat, true, memory_order_relaxed);
   }
 }
 
@@ -341,6 +452,8 @@ static aqr_status pair_half_edges(builder* b)
   b->first = AQR_NEW0(b->c, size_t, n_first);
   b->in_bucket = AQR_NEW(b->c, aqr_index, n);
   AQR_REQUIRE(b->first && b->in_bucket, AQR_OUT_OF_MEMORY);
+  atomic_init(&b->split_edges, 0);
+  atomic_init(&b->disagree, false);
   AQR_REQUIRE(aqr_step(b->c, 0.38), AQR_CANCELLED);
   for (size_t i = 0; i < n; i += 3)
     for (unsigned k = 0; k < 3; k++)
@@ -660,6 +773,19 @@ done:
   return status;
 }
 
+/* Triangles in order, and which meet. */
+static aqr_status arrange(builder* b, bool unique)
+{
+  aqr_status status = AQR_OK;
+  AQR_TRY(keep_triangles(b, unique));
+  AQR_TRY(measure_box(b));
+  AQR_TRY(aqr_surface_arrange(b->c, b->in, b->s));
+  AQR_TRY(check_areas(b));
+  AQR_TRY(pair_half_edges(b));
+done:
+  return status;
+}
+
 aqr_status aqr_surface_build(
   aqr_context* c, const aqr_input* input, double longest_edge, aqr_surface* s, aqr_report* report)
 {
@@ -668,11 +794,9 @@ aqr_status aqr_surface_build(
   aqr_status status = AQR_OK;
   AQR_TRY(check_input(&b));
   AQR_TRY(weld_points(&b));
-  AQR_TRY(keep_triangles(&b));
-  AQR_TRY(measure_box(&b));
-  AQR_TRY(aqr_surface_arrange(c, input, s));
-  AQR_TRY(check_areas(&b));
-  AQR_TRY(pair_half_edges(&b));
+  AQR_TRY(arrange(&b, false));
+  if (b.may_repeat) /* seldom: looking for it beforehand would cost a tenth of all */
+    AQR_TRY(arrange(&b, true));
   AQR_TRY(b.disagree ? orient(&b) : count_components(&b));
   AQR_TRY(split_points(&b));
   AQR_TRY(close_loops(&b));
