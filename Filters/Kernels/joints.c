@@ -127,8 +127,6 @@ static path follow(const aqr_polygon_mesh* m, aqr_index h, unsigned reach)
     p.across[p.n++] = o;
     p.gain -= vertex_price;
     aqr_index k = o ^ 1, face = aqr_pm_face(m, k);
-    if (aqr_pm_on_chain(m, k) && face != AQR_NONE)
-      break;
     for (unsigned i = 0; i < p.n; i++)
       if (visited[i] == face)
         return best;
