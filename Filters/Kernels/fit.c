@@ -23,6 +23,7 @@ static const double hold_tangent = 0.02;   /* and in the others */
 static const double hold_edge = 0.12;      /* against turning, relative to its ends' parts of the error */
 static const double farthest_move = 0.3;   /* of the shortest edge at a vertex, in one round */
 static const double least_sine = 0.3;      /* of a corner's angle: a move does not make it smaller than that */
+static const double open_height = 0.01;      /* of a corner that was straight, over the line between its neighbours */
 static const double farthest_sample =
   0.5;                                  /* of the longest side: what is farther away is another part of the surface */
 static const double least_cosine = 0.3; /* between a polygon and the surface below it */
@@ -664,6 +665,69 @@ done:
   return status;
 }
 
+/* ---- straight corners ---- */
+
+/* The smallest sine of the corners of triangles and quads that change where v moves to p. */
+static double least_sine_around(const aqr_polygon_mesh* m, aqr_index v, vec3 p)
+{
+  double least = 1;
+  aqr_index out = m->vertices[v].out;
+  do
+  {
+    vec3 at[4] = { p };
+    unsigned n = 1;
+    aqr_index h = aqr_pm_next(m, out);
+    for (; n < 4 && h != out; n++, h = aqr_pm_next(m, h))
+      at[n] = aqr_pm_point(m, aqr_pm_from(m, h));
+    if (h == out && aqr_pm_face(m, out) != AQR_NONE)
+    {
+      vec3 normal = v3_unit(v3_cross(v3_sub(at[2], at[0]), v3_sub(at[n - 1], at[1])));
+      const unsigned corner[3] = { n - 1, 0, 1 };
+      for (unsigned i = 0; i < 3; i++)
+        least = lesser(least, sine(at[(corner[i] + n - 1) % n], at[corner[i]], at[(corner[i] + 1) % n], normal));
+    }
+    out = aqr_pm_next_around(m, out);
+  } while (out != m->vertices[v].out);
+  return least;
+}
+
+/* Takes the vertex where h starts, a straight or concave corner, out over the line between its neighbours, unless that
+ * closes another corner as far. */
+static void open_corner(aqr_polygon_mesh* m, aqr_index h)
+{
+  aqr_index v = aqr_pm_from(m, h);
+  vec3 p = aqr_pm_point(m, v), from = aqr_pm_point(m, aqr_pm_from(m, aqr_pm_prev(m, h)));
+  vec3 along = v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), from);
+  vec3 out = v3_unit_or(v3_cross(along, m->vertices[v].normal), v3(0, 0, 0));
+  vec3 moved = v3_madd(p, open_height * v3_norm(along) - v3_dot(v3_sub(p, from), out), out);
+  if (least_sine_around(m, v, moved) > least_sine_around(m, v, p))
+    m->vertices[v].position = moved;
+}
+
+/* Lines that meet three at a vertex leave one of its corners wide, and straight or concave where they meet in a T. The
+ * error says nothing of it: what is moved is moved along the surface, and a few of a hundred vertices at most. */
+static void open_corners(aqr_polygon_mesh* m)
+{
+  for (size_t f = 0; f < m->n_faces; f++)
+  {
+    aqr_index h[4] = { m->faces[f] };
+    for (unsigned i = 1; i < 4; i++)
+      h[i] = aqr_pm_next(m, h[i - 1]);
+    if (h[3] == h[0] || aqr_pm_next(m, h[3]) != h[0])
+      continue;
+    vec3 p[4];
+    for (unsigned i = 0; i < 4; i++)
+      p[i] = aqr_pm_point(m, aqr_pm_from(m, h[i]));
+    vec3 normal = v3_cross(v3_sub(p[2], p[0]), v3_sub(p[3], p[1]));
+    for (unsigned i = 0; i < 4; i++)
+    {
+      vec3 cross = v3_cross(v3_sub(p[(i + 1) % 4], p[i]), v3_sub(p[(i + 3) % 4], p[i]));
+      if (!(v3_dot(cross, normal) > 0) && m->vertices[aqr_pm_from(m, h[i])].kind == AQR_VERTEX_INTERIOR)
+        open_corner(m, h[i]);
+    }
+  }
+}
+
 aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, aqr_polygon_mesh* m)
 {
   aqr_status status = AQR_OK;
@@ -687,6 +751,7 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
     AQR_TRY(damp(c, &f, at));
     AQR_TRY(judge(c, &f, round + 1 == rounds, at, next));
   }
+  open_corners(m);
   AQR_TRY(aqr_parallel(c, n, settle, &f, 0.9, 1));
 done:
   release(c, &f);

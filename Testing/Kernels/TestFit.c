@@ -178,6 +178,33 @@ AQR_TEST(vertices_of_the_boundary_do_not_move)
 }
 
 /* A strip folded back over itself, its two sheets a hundredth apart. */
+/* Three vertices of a lattice lie inside a neighbouring quad, one of them at the border of the part that may move. */
+AQR_TEST(concave_corners_of_quads_are_opened)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  aqr_surface s;
+  CHECK(surface_of_grid(&c, 40, 40, false, on_sheet, &s));
+  CHECK(grid_of_quads(&c, 8, 8, false, on_sheet, &m));
+  for (size_t v = 0; v < m.n_vertices; v++)
+  {
+    vec3* p = &m.vertices[v].position;
+    if (m.vertices[v].kind == AQR_VERTEX_INTERIOR && (v == 3 * 9 + 3 || v == 5 * 9 + 6 || v == 9 + 1))
+      *p = v3_add(*p, v3(0.065, 0.065, 0)); /* the diagonal is 0.0625 away */
+  }
+  set_places(&s, &m);
+  CHECK(aqr_fit(&c, &s, NULL, &m) == AQR_OK);
+  for (aqr_index h = 0; h < m.n_half_edges; h++)
+  {
+    vec3 a = aqr_pm_point(&m, aqr_pm_from(&m, aqr_pm_prev(&m, h))), b = aqr_pm_point(&m, aqr_pm_from(&m, h));
+    vec3 n = v3_cross(v3_sub(b, a), v3_sub(aqr_pm_point(&m, aqr_pm_to(&m, h)), b));
+    CHECK(aqr_pm_face(&m, h) == AQR_NONE || n.z > 1e-6);
+    CHECK(fabs(b.z) < 1e-12);
+  }
+  aqr_polygon_mesh_free(&c, &m);
+  free_surface(&s);
+}
+
 static aqr_vertex on_fold(double s, double t)
 {
   double z = s < 0.5 ? 0 : 0.01, x = s < 0.5 ? 2 * s : 2 - 2 * s;
