@@ -70,7 +70,8 @@ static bool is_odd(const aqr_polygon_mesh* m, aqr_index f, const void* options)
 static bool between_odd_faces(const aqr_polygon_mesh* m, const aqr_marks* odd, aqr_index h)
 {
   aqr_index f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
-  return f != AQR_NONE && g != AQR_NONE && aqr_is_marked(odd, f) && aqr_is_marked(odd, g) && !is_quad(m, f) && !is_quad(m, g);
+  return f != AQR_NONE && g != AQR_NONE && aqr_is_marked(odd, f) && aqr_is_marked(odd, g) && !is_quad(m, f) &&
+         !is_quad(m, g);
 }
 
 /* ---- contraction ---- */

@@ -16,8 +16,8 @@ static void look_at(void* data, size_t begin, size_t end)
     l->on[i] = l->is_worth(l->m, (aqr_index)i, l->options);
 }
 
-aqr_status aqr_mark(aqr_context* c, const aqr_polygon_mesh* m, size_t n, aqr_worth_a_look is_worth, const void* options,
-  aqr_marks* marks)
+aqr_status aqr_mark(
+  aqr_context* c, const aqr_polygon_mesh* m, size_t n, aqr_worth_a_look is_worth, const void* options, aqr_marks* marks)
 {
   marks->n = n;
   if (!AQR_RESERVE(c, marks->on, marks->capacity, n))

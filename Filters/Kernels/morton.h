@@ -19,7 +19,8 @@ static inline uint32_t aqr_spread_bits(uint32_t x)
 /* The Morton code of a point of the unit box around the origin. */
 static inline uint32_t aqr_morton(vec3 p)
 {
-  uint32_t x = (uint32_t)(1023 * lesser(1, greater(0, p.x + 0.5))), y = (uint32_t)(1023 * lesser(1, greater(0, p.y + 0.5)));
+  uint32_t x = (uint32_t)(1023 * lesser(1, greater(0, p.x + 0.5))),
+           y = (uint32_t)(1023 * lesser(1, greater(0, p.y + 0.5)));
   uint32_t z = (uint32_t)(1023 * lesser(1, greater(0, p.z + 0.5)));
   return aqr_spread_bits(x) | aqr_spread_bits(y) << 1 | aqr_spread_bits(z) << 2;
 }

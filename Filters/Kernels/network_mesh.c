@@ -109,9 +109,9 @@ static void place_vertices(void* data, size_t begin, size_t end)
   size_t n_crossings = v->net->n_crossings;
   for (size_t i = begin; i < end; i++)
     if (v->id[i] != AQR_NONE)
-      v->mesh->vertices[v->id[i]] = i < n_crossings
-        ? vertex_of_crossing(v->s, v->field, v->sizing, v->lines, &v->net->crossings[i])
-        : vertex_of_stop(v->s, v->field, v->sizing, v->lines, &v->net->stops[i - n_crossings]);
+      v->mesh->vertices[v->id[i]] =
+        i < n_crossings ? vertex_of_crossing(v->s, v->field, v->sizing, v->lines, &v->net->crossings[i])
+                        : vertex_of_stop(v->s, v->field, v->sizing, v->lines, &v->net->stops[i - n_crossings]);
 }
 
 aqr_status aqr_network_mesh(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,

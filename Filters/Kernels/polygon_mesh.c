@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "polygon_mesh.h"
 
-#include <stdatomic.h>
+#include "shared.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -605,15 +606,13 @@ void aqr_polygon_mesh_free(aqr_context* c, aqr_polygon_mesh* m)
 
 /* ---- checks ---- */
 
-typedef _Atomic(size_t) shared_count;
-
 /* What threads found, each in its part of the mesh. */
 typedef struct check
 {
   const aqr_polygon_mesh* m;
   atomic_bool wrong;
-  shared_count living, inside;   /* half-edges, and those that have a face */
-  shared_count in_faces, in_fans; /* half-edges in the cycles that faces and vertices begin */
+  aqr_shared_size living, inside;    /* half-edges, and those that have a face */
+  aqr_shared_size in_faces, in_fans; /* half-edges in the cycles that faces and vertices begin */
 } check;
 
 /* Whether a living half-edge is linked to its neighbours in its loop. */

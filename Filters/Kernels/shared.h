@@ -16,16 +16,15 @@ typedef _Atomic(size_t) aqr_shared_size;
 static inline void aqr_shared_raise(aqr_shared_double* at, double x)
 {
   double now = atomic_load_explicit(at, memory_order_relaxed);
-  while (now < x &&
-         !atomic_compare_exchange_weak_explicit(at, &now, x, memory_order_relaxed, memory_order_relaxed))
+  while (now < x && !atomic_compare_exchange_weak_explicit(at, &now, x, memory_order_relaxed, memory_order_relaxed))
     ;
 }
+
 /* Lowers it to x where it is more. */
 static inline void aqr_shared_lower(aqr_shared_index* at, aqr_index x)
 {
   aqr_index now = atomic_load_explicit(at, memory_order_relaxed);
-  while (now > x &&
-         !atomic_compare_exchange_weak_explicit(at, &now, x, memory_order_relaxed, memory_order_relaxed))
+  while (now > x && !atomic_compare_exchange_weak_explicit(at, &now, x, memory_order_relaxed, memory_order_relaxed))
     ;
 }
 

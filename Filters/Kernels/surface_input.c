@@ -122,8 +122,8 @@ static bool enter_point(reader* r, aqr_index v)
       return true;
     if (!same_point(aqr_input_point(r->in, there), p)) /* another thread took the place meanwhile */
       continue;
-    while (r->first_use[v] < r->first_use[there] && !atomic_compare_exchange_weak_explicit(&r->table[at], &there, v,
-                                                      memory_order_relaxed, memory_order_relaxed))
+    while (r->first_use[v] < r->first_use[there] &&
+           !atomic_compare_exchange_weak_explicit(&r->table[at], &there, v, memory_order_relaxed, memory_order_relaxed))
       ;
     return false;
   }

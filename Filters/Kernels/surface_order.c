@@ -142,8 +142,8 @@ aqr_status aqr_surface_arrange(aqr_context* c, const aqr_input* input, aqr_surfa
   a.last = AQR_NEW(c, aqr_index, n_in);
   AQR_REQUIRE(a.input_point && a.first && a.last, AQR_OUT_OF_MEMORY);
   AQR_TRY(number_points(c, &a));
-  AQR_REQUIRE(aqr_surface_reserve_points(c, &a.to, a.to.n_points) &&
-                aqr_surface_reserve_origins(c, &a.to, a.to.n_points),
+  AQR_REQUIRE(
+    aqr_surface_reserve_points(c, &a.to, a.to.n_points) && aqr_surface_reserve_origins(c, &a.to, a.to.n_points),
     AQR_OUT_OF_MEMORY);
   AQR_TRY(aqr_parallel(c, a.to.n_points, place_points, &a, 0.35, 0.36));
   aqr_surface swap = *s;

@@ -51,7 +51,8 @@ AQR_TEST(of_equal_points_the_first_that_a_triangle_uses_stays_on_any_number_of_t
   }
 }
 
-/* Triangles that repeat are seen where their half-edges meet: also among others at an edge, and none that only touch. */
+/* Triangles that repeat are seen where their half-edges meet: also among others at an edge, and none that only touch.
+ */
 AQR_TEST(fins_that_repeat_are_dropped_and_others_kept)
 {
   shape m = shape_torus(40, 20);
