@@ -9,7 +9,7 @@
 enum
 {
   tidy_passes = 32,
-  calm = 4096,        /* half-edges with nothing to tidy, before all threads look where there is something again */
+  calm = 1 << 15,     /* half-edges with nothing to tidy, before all threads look where there is something again */
   most_compared = 32, /* edges or corners compared with each other to see whether one is double */
   arc_candidates = 24 /* corners tried on either side when a face that meets itself is split */
 };
