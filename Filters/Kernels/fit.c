@@ -10,7 +10,7 @@
 enum
 {
   most_steps = 512, /* faces walked from a corner of a polygon to below a sample of it */
-  rounds = 3,
+  rounds = 4,
   solver_steps = 12,
   damp_rounds = 6,
   samples = 6
