@@ -274,12 +274,21 @@ static aqr_status connect(aqr_context* c, aqr_polygon_mesh* m, aqr_index h0, aqr
   return status != AQR_OK || direct ? status : split_aside(c, m, aqr_pm_prev(m, h0));
 }
 
+/* Whether a connection from p to q goes through `middle`: along a crease that ends there it would leave no area. */
+static bool goes_through(vec3 p, vec3 middle, vec3 q)
+{
+  vec3 a = v3_sub(p, middle), b = v3_sub(q, middle);
+  double along = v3_dot(a, b);
+  return along < 0 && along * along > 0.9999 * v3_norm2(a) * v3_norm2(b);
+}
+
 /* The shortest connection between the corners after i and before j and those after j and before i: corners *from
  * and *to. */
 static bool choose_connection(const aqr_polygon_mesh* m, const walker* w, size_t i, size_t j, size_t* from, size_t* to)
 {
   size_t inner = j - i - 1, outer = w->n - inner - 2;
   size_t step_in = inner / arc_candidates + 1, step_out = outer / arc_candidates + 1;
+  const vec3 repeated = aqr_pm_point(m, aqr_pm_from(m, w->corner[i]));
   double best = INFINITY;
   bool found = false;
   for (unsigned whole = 0; whole < 2 && !found;
@@ -293,7 +302,7 @@ static bool choose_connection(const aqr_polygon_mesh* m, const walker* w, size_t
         double d = v3_norm2(v3_sub(aqr_pm_point(m, u), aqr_pm_point(m, v)));
         if (u == v)
           continue;
-        if (aqr_pm_find(m, u, v) != AQR_NONE)
+        if (aqr_pm_find(m, u, v) != AQR_NONE || goes_through(aqr_pm_point(m, u), repeated, aqr_pm_point(m, v)))
           d = 4 * d + 1;
         if (!found || d < best)
         {
