@@ -23,7 +23,7 @@ static const double hold_tangent = 0.02;   /* and in the others */
 static const double hold_edge = 0.12;      /* against turning, relative to its ends' parts of the error */
 static const double farthest_move = 0.3;   /* of the shortest edge at a vertex, in one round */
 static const double least_sine = 0.3;      /* of a corner's angle: a move does not make it smaller than that */
-static const double open_height = 0.01;      /* of a corner that was straight, over the line between its neighbours */
+static const double open_height = 0.01;    /* of a corner that was straight, over the line between its neighbours */
 static const double farthest_sample =
   0.5;                                  /* of the longest side: what is farther away is another part of the surface */
 static const double least_cosine = 0.3; /* between a polygon and the surface below it */

@@ -29,9 +29,9 @@ static const double seed_distance = 0.6;  /* of the spacing: nearer than this to
 static const double cover_distance = 0.8; /* of the spacing: a place farther than this from all lines gets a seed */
 static const double least_length = 1.5;   /* spacings: a line shorter than this is not worth its two T-joints */
 static const double least_turning_length = 6; /* the same for a line that meets itself at both ends */
-static const double damping = 0.8;    /* of the step to the number of points asked for: what is overshot is lost */
-static const double enough = 0.99;    /* of that number */
-static const double most_finer = 1.5; /* than the sizing: beyond, its bounds would no longer hold */
+static const double damping = 0.8;       /* of the step to the number of points asked for: what is overshot is lost */
+static const double enough = 0.99;       /* of that number */
+static const double most_finer = 1.5;    /* than the sizing: beyond, its bounds would no longer hold */
 static const double join_distance = 0.1; /* of the spacing: ends as near on either side of a seam are one crossing */
 static const double node_distance =
   0.35; /* of the spacing: a line does not go on over a seam nearer to another's end */

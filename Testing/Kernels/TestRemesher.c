@@ -222,7 +222,8 @@ static void check_random(unsigned first, unsigned count)
     aqr_remesher_free(r);
     shape_free(&m);
   }
-  printf("%u surfaces, %zu of several components, %zu with locked edges, %zu with handles; %zu have faces without area\n",
+  printf(
+    "%u surfaces, %zu of several components, %zu with locked edges, %zu with handles; %zu have faces without area\n",
     count, met[0], met[1], met[2], flat);
   CHECK(flat <= count / 25); /* one in seven had: creases that ended inside a face were joined to themselves */
 }
