@@ -14,6 +14,8 @@ enum
   arc_candidates = 24 /* corners tried on either side when a face that meets itself is split */
 };
 
+static const double straight_cosine2 = 0.9999; /* squared: half a degree, as of edges of one straight crease */
+
 aqr_vertex aqr_middle(const aqr_polygon_mesh* m, aqr_index h)
 {
   const aqr_vertex *a = &m->vertices[aqr_pm_from(m, h)], *b = &m->vertices[aqr_pm_to(m, h)];
@@ -279,7 +281,7 @@ static bool goes_through(vec3 p, vec3 middle, vec3 q)
 {
   vec3 a = v3_sub(p, middle), b = v3_sub(q, middle);
   double along = v3_dot(a, b);
-  return along < 0 && along * along > 0.9999 * v3_norm2(a) * v3_norm2(b);
+  return along < 0 && along * along > straight_cosine2 * v3_norm2(a) * v3_norm2(b);
 }
 
 /* The shortest connection between the corners after i and before j and those after j and before i: corners *from

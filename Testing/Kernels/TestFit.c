@@ -177,7 +177,6 @@ AQR_TEST(vertices_of_the_boundary_do_not_move)
   CHECK(c.bytes == 0);
 }
 
-/* A strip folded back over itself, its two sheets a hundredth apart. */
 /* Three vertices of a lattice lie inside a neighbouring quad, one of them at the border of the part that may move. */
 AQR_TEST(concave_corners_of_quads_are_opened)
 {
@@ -205,6 +204,7 @@ AQR_TEST(concave_corners_of_quads_are_opened)
   free_surface(&s);
 }
 
+/* A strip folded back over itself, its two sheets a hundredth apart. */
 static aqr_vertex on_fold(double s, double t)
 {
   double z = s < 0.5 ? 0 : 0.01, x = s < 0.5 ? 2 * s : 2 - 2 * s;
