@@ -3,6 +3,7 @@
 
 #include "chain_places.h"
 #include "closest.h"
+#include "fans.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -170,23 +171,15 @@ static void release(aqr_context* c, fit* f)
   AQR_DROP(c, f->folds, n);
 }
 
-/* Fans from the first corner; quads are cut at the shorter diagonal, as renderers that care do. */
+/* Fans, as programs that read the mesh take it. */
 static void triangulate(void* data, size_t begin, size_t end)
 {
   fit* f = data;
-  const aqr_polygon_mesh* m = f->m;
+  aqr_polygon_mesh* m = f->m;
   for (size_t i = begin; i < end; i++)
   {
-    aqr_index h = m->faces[i];
-    if (f->first[i + 1] - f->first[i] == 2)
-    {
-      aqr_index k = aqr_pm_next(m, h);
-      vec3 a = aqr_pm_point(m, aqr_pm_from(m, h)), b = aqr_pm_point(m, aqr_pm_from(m, k));
-      vec3 c = aqr_pm_point(m, aqr_pm_to(m, k)), d = aqr_pm_point(m, aqr_pm_from(m, aqr_pm_prev(m, h)));
-      if (v3_norm2(v3_sub(a, c)) > v3_norm2(v3_sub(b, d)))
-        h = k;
-    }
-    aqr_index a = aqr_pm_from(m, h);
+    aqr_fan_start(m, (aqr_index)i);
+    aqr_index h = m->faces[i], a = aqr_pm_from(m, h);
     for (size_t t = f->first[i]; t < f->first[i + 1]; t++)
     {
       h = aqr_pm_next(m, h);
@@ -752,6 +745,7 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
     AQR_TRY(judge(c, &f, round + 1 == rounds, at, next));
   }
   open_corners(m);
+  AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, 0.9, 0.9));
   AQR_TRY(aqr_parallel(c, n, settle, &f, 0.9, 1));
 done:
   release(c, &f);

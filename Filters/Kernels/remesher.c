@@ -32,7 +32,7 @@ static const double shortest_feature = 0.02;
 static const double sharpest = 2; /* over the averaging radius: bends sharper than that it cannot tell from noise */
 static const double least_radius = 0.001;
 static const double largest_excess = 2.2; /* of points over the prediction: lines are mostly nearer than the spacing */
-static const double target_accuracy = 0.03;
+static const double target_accuracy = 0.028;
 static const double retry = 0.97; /* of the tolerance before */
 static const double lost_topology =
   10; /* more than any miss: such an attempt serves only where all others lost it too */
@@ -490,6 +490,33 @@ static double ask_again(const trial* trials, int n, double points)
   return ask;
 }
 
+/* Attempts that gave too few points and too many: those expected of the lines and those of the output. */
+typedef struct bracket
+{
+  double few, made_of_few, many, made_of_many;
+} bracket;
+
+/* The points to want of the next attempt's lines, after lines for `reached` gave an output of `made`. */
+static double want_next(bracket* b, double goal, double reached, double made)
+{
+  if (made < goal && reached > b->few)
+  {
+    b->few = reached;
+    b->made_of_few = made;
+  }
+  if (made >= goal && reached < b->many)
+  {
+    b->many = reached;
+    b->made_of_many = made;
+  }
+  /* cuts for the topology add points whatever the lines; vertices that merge are a share of them */
+  double next = made > reached ? fmax(1, goal - (made - reached)) : goal * reached / made;
+  bool is_bracket = b->few > 0 && b->few < b->many && isfinite(b->many);
+  if (!is_bracket)
+    return next;
+  return b->few + (b->many - b->few) * (goal - b->made_of_few) / (b->made_of_many - b->made_of_few);
+}
+
 /* Searches the tolerance that gives the target. The spacing first taken is one whose lines are seldom too many, and
  * shrinks as lines come. The best attempt is kept. */
 static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
@@ -502,6 +529,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
   double ask = goal / largest_excess, points = goal, before[3] = { 0, 0, 0 };
   double last_made = INFINITY;
   trial trials[most_attempts];
+  bracket between = { 0, 0, INFINITY, INFINITY };
   outcome best = { .report = r->report, .error = INFINITY };
   for (int i = 0; i < most_attempts; i++)
   {
@@ -524,11 +552,10 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
     }
     if (error < (i < fine_attempts ? target_accuracy : missed_accuracy))
       break;
-    /* cuts for the topology add points whatever the lines; vertices that merge are a share of them */
     if (points <= 1 && made > 0.98 * last_made)
       break; /* no fewer come where fewest are asked for: chains alone give more */
     last_made = made;
-    points = made > reached.points ? fmax(1, goal - (made - reached.points)) : goal * reached.points / made;
+    points = want_next(&between, goal, reached.points, made);
     trials[i] = (trial){ ask, reached };
     ask = ask_again(trials, i + 1, points);
   }

@@ -21,6 +21,7 @@ enum
   free_failures = 64, /* ... and these many lines more: the bound of the work along threads without area */
   most_excess = 8,    /* of points over those asked for, beyond one per face of the surface: the attempt is lost, and
                          what it may cost is bounded */
+  most_left_out = 32, /* lines that would go too far beyond the points asked for, until these count as reached */
   most_in_vain = 2    /* faces crossed by growths that came to nothing, per face crossed by the lines kept and per
                          face of the surface: among spikes a growth can cross thousands */
 };
@@ -31,6 +32,7 @@ static const double least_length = 1.5;   /* spacings: a line shorter than this 
 static const double least_turning_length = 6; /* the same for a line that meets itself at both ends */
 static const double damping = 0.8;       /* of the step to the number of points asked for: what is overshot is lost */
 static const double enough = 0.99;       /* of that number */
+static const double most_over = 0.015;   /* of it, that one more line may go beyond */
 static const double most_finer = 1.5;    /* than the sizing: beyond, its bounds would no longer hold */
 static const double join_distance = 0.1; /* of the spacing: ends as near on either side of a seam are one crossing */
 static const double node_distance =
@@ -71,6 +73,7 @@ typedef struct sampler
   size_t crossed;  /* faces that all growths before this one crossed */
   double points;   /* expected of the lines: their crossings, and on chains their ends or the chain's own spacing */
   double goal;     /* no further seeds once as many are expected */
+  int left_out;    /* lines that would have gone too far beyond it */
 } sampler;
 
 /* ---- chains ---- */
@@ -231,6 +234,32 @@ done:
 
 /* ---- growing and committing ---- */
 
+/* Whether no further line is wanted. */
+static bool is_full(const sampler* m)
+{
+  return m->points >= m->goal || m->left_out >= most_left_out;
+}
+
+/* Whether the grown line, not yet added, goes too far beyond the goal: one that winds along a tube can give half of all
+ * points. Shorter ones may still fit. */
+static bool is_too_much(const sampler* m)
+{
+  const aqr_lines* l = m->lines;
+  const aqr_line* line = &m->grower.line;
+  const aqr_sample* a = m->grower.samples;
+  const double most = (1 + most_over) * m->goal - m->points;
+  double added = 0;
+  if (!isfinite(most) || 2 * (double)a[line->count - 1].sigma < most) /* crossings are a spacing apart, seldom half */
+    return false;
+  for (size_t i = 0; i + 1 < line->count && added <= most; i++)
+    for (aqr_index k = l->head[a[i].face]; k != AQR_NONE; k = l->segments[k].next)
+    {
+      const aqr_sample* b = &l->samples[l->segments[k].sample];
+      added += !l->lines[l->segments[k].line].is_chain && aqr_chords_cross(m->s, a[i].face, &a[i], &a[i + 1], b, b + 1);
+    }
+  return added > most;
+}
+
 static bool on_border(uint8_t end)
 {
   return end == AQR_END_BOUNDARY || end == AQR_END_FEATURE;
@@ -315,6 +344,12 @@ static aqr_status commit(sampler* m, aqr_index partner, aqr_index* id)
     m->in_vain += crossed;
     return AQR_OK;
   }
+  if (is_too_much(m))
+  {
+    m->left_out++;
+    m->in_vain += crossed;
+    return AQR_OK;
+  }
   *id = (aqr_index)m->lines->n_lines;
   g->line.partner[0] = partner;
   join_ends(m);
@@ -383,7 +418,7 @@ static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double di
 {
   bool allowed;
   aqr_index id = AQR_NONE;
-  if (m->points >= m->goal || gives_up(m))
+  if (is_full(m) || gives_up(m))
     return AQR_OK;
   aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
   if (status != AQR_OK || !allowed)
@@ -410,7 +445,7 @@ static aqr_status seed_inside(sampler* m, aqr_index f, vec3 p, vec3 d, double di
 static aqr_status seed_on_chain(sampler* m, aqr_index h, double t, double distance)
 {
   const aqr_surface* s = m->s;
-  for (unsigned side = 0; side < 2 && m->points < m->goal; side++)
+  for (unsigned side = 0; side < 2 && !is_full(m); side++)
   {
     aqr_index k = side ? aqr_any_twin(s, h) : h;
     if (k == AQR_NONE)
@@ -505,7 +540,7 @@ static aqr_status ask_parent(sampler* m, aqr_index id)
   const aqr_line line = m->lines->lines[id];
   double end = (double)m->lines->samples[line.first + line.count - 1].sigma;
   aqr_status status = AQR_OK;
-  if (m->points >= m->goal || m->parents[id].asked == m->parents[id].n_marks + 1)
+  if (is_full(m) || m->parents[id].asked == m->parents[id].n_marks + 1)
     return AQR_OK;
   m->parents[id].asked = m->parents[id].n_marks + 1;
   AQR_TRY(collect_places(m, id));
@@ -591,7 +626,7 @@ static aqr_status reach_points(sampler* m, double points, double* finer)
 {
   aqr_status status = AQR_OK;
   m->goal = points;
-  for (int i = 0; i < most_passes && m->points < enough * points; i++)
+  for (int i = 0; i < most_passes && m->points < enough * points && !is_full(m); i++)
   {
     double factor = fmin(most_finer / *finer, pow(points / fmax(1, m->points), damping / 2));
     if (factor <= 1)
