@@ -13,6 +13,7 @@ enum
 };
 
 static const double near_intersection = 0.2; /* of the local spacing: such vertices are merged (paper 5) */
+static const double tip_cosine = 0.7071;     /* of the angle between two edges that lead to a tip and back */
 static const double weld_reach = 0.75;       /* of the local spacing: T-joints as near may become one crossing */
 static const double least_gain = 0.05;       /* an operation is worth its while */
 static const double merge_allowance = 0.3;   /* what merging near intersections may cost in shape */
@@ -363,6 +364,15 @@ done:
   return status;
 }
 
+/* Whether the two edges of a vertex go back nearly the same way: around the tip of a limb, which they stand for. */
+static bool is_tip(const aqr_polygon_mesh* m, aqr_index v)
+{
+  aqr_index h = m->vertices[v].out;
+  vec3 a = v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), aqr_pm_point(m, v));
+  vec3 b = v3_sub(aqr_pm_point(m, aqr_pm_to(m, aqr_pm_next_around(m, h))), aqr_pm_point(m, v));
+  return v3_dot(a, b) > tip_cosine * v3_norm(a) * v3_norm(b);
+}
+
 /* A vertex between two lines that ended there, which no cut has come to, joins their edges. */
 static bool join_loose(aqr_context* c, aqr_polygon_mesh* m)
 {
@@ -370,7 +380,7 @@ static bool join_loose(aqr_context* c, aqr_polygon_mesh* m)
   {
     if (v % 65536 == 0 && !aqr_step(c, 0.85))
       return false;
-    if (m->vertices[v].out != AQR_NONE && aqr_can_join(m, v))
+    if (m->vertices[v].out != AQR_NONE && aqr_can_join(m, v) && !is_tip(m, v))
       aqr_pm_join_edges(m, v);
   }
   return true;

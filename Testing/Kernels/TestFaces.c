@@ -345,4 +345,30 @@ AQR_TEST(running_out_of_memory_leaves_nothing_behind)
   CHECK(failed > 5 && failed < 60);
 }
 
+/* A limb with a ring of four around it and a line that leads over its tip, where nothing else goes: the vertex there
+ * has that line's edges only. Over a flat end it is not worth keeping. */
+AQR_TEST(the_tip_of_a_limb_is_not_cut_off)
+{
+  const size_t offsets[8] = { 0, 4, 8, 12, 16, 20, 24, 28 };
+  const aqr_index corner[28] = { 7, 6, 5, 4, 0, 1, 2, 8, 2, 3, 0, 8, 0, 4, 5, 1, 1, 5, 6, 2, 2, 6, 7, 3, 3, 7, 4, 0 };
+  for (int flat = 0; flat < 2; flat++)
+  {
+    aqr_context c = { 0 };
+    aqr_polygon_mesh m = { 0 };
+    aqr_vertex v[9];
+    for (unsigned i = 0; i < 9; i++)
+    {
+      double a = i * 1.57079632679489662;
+      vec3 p = i < 8 ? v3(cos(a), sin(a), i < 4 ? 0 : -1) : v3(0, 0, flat ? 0 : 4);
+      v[i] = (aqr_vertex){ .position = p, .normal = i < 8 && !flat ? v3(cos(a), sin(a), 0) : v3(0, 0, 1), .size = 1 };
+    }
+    CHECK(aqr_pm_append(&c, &m, v, 9, offsets, 7, corner) == AQR_OK);
+    CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+    CHECK(aqr_pm_is_regular(&m));
+    CHECK(m.n_vertices == (flat ? 8 : 9));
+    aqr_polygon_mesh_free(&c, &m);
+    CHECK(c.bytes == 0);
+  }
+}
+
 AQR_TEST_MAIN
