@@ -67,6 +67,36 @@ static inline aqr_plane aqr_symmetry_plane(const aqr_options* o)
   return (aqr_plane){ v3_load(o->symmetry_origin), aqr_symmetry_normal(o) };
 }
 
+/* What is remeshed: the cleaned input, or half of it. */
+static inline aqr_surface* aqr_solid(aqr_remesher* r)
+{
+  return r->half.n_faces ? &r->half : &r->base;
+}
+
+static inline double aqr_cosine(double degrees)
+{
+  return cos(degrees * 0.017453292519943295);
+}
+
+static inline bool aqr_differ(double a, double b)
+{
+  return a < b || a > b;
+}
+
+/* Time and memory of a stage (remesher.c): returns when it began, which its end is to be given. */
+double aqr_begin_stage(aqr_remesher* r, int stage);
+void aqr_end_stage(aqr_remesher* r, int stage, double began);
+
+/* AQR_BAD_OPTION, and a message, where an option is outside its range (options.c). */
+aqr_status aqr_check_options(aqr_remesher* r, const aqr_options* o);
+/* Of n factors on the density, which may be NULL. */
+uint64_t aqr_fingerprint(const double* a, size_t n);
+/* The first stage that reads an option which changed since the last run. */
+int aqr_first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t density);
+
+/* The stages from the lines to the faces, at the tolerance or for the number of points asked for (density.c). */
+aqr_status aqr_run_lines(aqr_remesher* r, const aqr_options* o);
+
 /* Fill and release the views (results.c). */
 aqr_status aqr_results_mesh(aqr_remesher* r);
 aqr_status aqr_results_field(aqr_remesher* r);

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Options: their defaults, their ranges, and what has to be done anew when they change. */
+#include "pipeline.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum
+{
+  cookie = 0x41515233
+};
+
+aqr_options aqr_default_options(void)
+{
+  return (aqr_options){ .cookie = cookie,
+    .density = AQR_DENSITY_TOLERANCE,
+    .tolerance = 0.0005,
+    .target_points = 5000,
+    .curvature_radius = 0.01,
+    .smoothing_iterations = 5,
+    .confidence_angle = 30,
+    .feature_lines = 1,
+    .feature_angle = 40,
+    .boundary_lines = 1,
+    .largest_spacing = 0.05,
+    .anisotropy = 1,
+    .adaptivity = 1,
+    .symmetry_normal = { 1, 0, 0 },
+    .largest_valence = 5,
+    .convex_partition = 1,
+    .preserve_topology = 1,
+    .show_field = 1,
+    .show_lines = 1 };
+}
+
+static aqr_status check(aqr_remesher* r, const char* name, double value, double low, double high)
+{
+  if (value >= low && value <= high)
+    return AQR_OK;
+  snprintf(r->context.message, sizeof r->context.message, "%s is %g, outside [%g, %g]", name, value, low, high);
+  return AQR_BAD_OPTION;
+}
+
+aqr_status aqr_check_options(aqr_remesher* r, const aqr_options* o)
+{
+  const struct
+  {
+    const char* name;
+    double value, low, high;
+  } ranges[] = {
+    { "cookie (use aqr_default_options)", o->cookie, cookie, cookie },
+    { "density", (double)o->density, AQR_DENSITY_TOLERANCE, AQR_DENSITY_POINTS },
+    { "tolerance", o->tolerance, 1e-7, 0.1 },
+    { "target_points", (double)o->target_points, 4, 2147483647.0 },
+    { "curvature_radius", o->curvature_radius, 0, 0.2 },
+    { "smoothing_iterations", o->smoothing_iterations, 0, 1000 },
+    { "confidence_angle", o->confidence_angle, 0, 90 },
+    { "feature_angle", o->feature_angle, 1e-6, 180 },
+    { "largest_spacing", o->largest_spacing, 1e-4, 1 },
+    { "anisotropy", o->anisotropy, 0, 1 },
+    { "adaptivity", o->adaptivity, 0, 1 },
+    { "largest_valence", o->largest_valence, 4, 64 },
+  };
+  for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+  {
+    aqr_status status = check(r, ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high);
+    if (status != AQR_OK)
+      return status;
+  }
+  const double *at = o->symmetry_origin, *up = o->symmetry_normal;
+  bool good = fmax(fmax(fabs(up[0]), fabs(up[1])), fabs(up[2])) > 0;
+  for (unsigned k = 0; k < 3; k++)
+    good &= isfinite(at[k]) && isfinite(up[k]);
+  if (o->symmetry && !good)
+  {
+    snprintf(r->context.message, sizeof r->context.message, "%s",
+      "symmetry_origin and symmetry_normal must be finite, and the normal no zero vector");
+    return AQR_BAD_OPTION;
+  }
+  for (size_t i = 0; o->density_scale && i < r->n_input_points; i++)
+    if (!(o->density_scale[i] > 0) || !isfinite(o->density_scale[i]))
+    {
+      snprintf(r->context.message, sizeof r->context.message, "density_scale[%zu] is %g, not a finite factor above 0",
+        i, o->density_scale[i]);
+      return AQR_BAD_OPTION;
+    }
+  return AQR_OK;
+}
+
+uint64_t aqr_fingerprint(const double* a, size_t n)
+{
+  uint64_t h = 0xcbf29ce484222325u;
+  for (size_t i = 0; a && i < n; i++)
+  {
+    uint64_t bits;
+    memcpy(&bits, &a[i], sizeof bits);
+    h = (h ^ bits) * 0x100000001b3u;
+  }
+  return a ? h : 0;
+}
+
+int aqr_first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t density)
+{
+  const aqr_options* d = &r->done;
+  bool moved = false;
+  for (unsigned k = 0; k < 3; k++)
+    moved |= aqr_differ(o->symmetry_origin[k], d->symmetry_origin[k]) ||
+             aqr_differ(o->symmetry_normal[k], d->symmetry_normal[k]);
+  if (o->feature_lines != d->feature_lines || aqr_differ(o->feature_angle, d->feature_angle) ||
+      !o->symmetry != !d->symmetry || (o->symmetry && moved))
+    return AQR_STAGE_FEATURES;
+  if (aqr_differ(o->curvature_radius, d->curvature_radius))
+    return AQR_STAGE_CURVATURE;
+  if (o->smoothing_iterations != d->smoothing_iterations || aqr_differ(o->confidence_angle, d->confidence_angle))
+    return AQR_STAGE_FIELD;
+  if (density != r->done_density || aqr_differ(o->largest_spacing, d->largest_spacing) ||
+      aqr_differ(o->anisotropy, d->anisotropy) || aqr_differ(o->adaptivity, d->adaptivity) ||
+      !o->pure_quads != !d->pure_quads)
+    return AQR_STAGE_SIZING;
+  return AQR_STAGE_LINES;
+}
