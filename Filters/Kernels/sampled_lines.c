@@ -13,7 +13,7 @@ enum
 
 static const double least_length = 1.5;       /* spacings: a line shorter than this is not worth its two T-joints */
 static const double least_turning_length = 6; /* the same for a line that meets itself at both ends */
-static const double most_over = 0.015;        /* of it, that one more line may go beyond */
+static const double most_over = 0.015;        /* of the points asked for, that one more line may go beyond */
 static const double join_distance = 0.1; /* of the spacing: ends as near on either side of a seam are one crossing */
 static const double node_distance =
   0.35; /* of the spacing: a line does not go on over a seam nearer to another's end */

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The moves of the vertices for which the polygons, seen as planes at samples of them, come nearest to the surface: a
+ * sparse system of normal equations. */
+#ifndef AQR_FIT_SYSTEM_H
+#define AQR_FIT_SYSTEM_H
+
+#include "polygon_mesh.h"
+#include "surface.h"
+
+#include <stdatomic.h>
+
+enum
+{
+  AQR_FIT_SAMPLES = 6
+};
+
+/* Quadrature of degree four over a triangle (Dunavant 1985): squared distances from a quadratic surface are exact. */
+extern const double aqr_fit_place[AQR_FIT_SAMPLES][3]; /* barycentric */
+extern const double aqr_fit_weight[AQR_FIT_SAMPLES];
+
+/* A place in a triangle and the tangent plane of the surface below it, both scaled by the root of the area it stands
+ * for. */
+typedef struct aqr_fit_sample
+{
+  float normal[3], distance;
+  aqr_index face; /* where the next round looks first */
+} aqr_fit_sample;
+
+/* A triangle of a polygon. */
+typedef struct aqr_fit_triangle
+{
+  aqr_index v[3];
+  aqr_fit_sample at[AQR_FIT_SAMPLES];
+  float error; /* squared distance, over the area */
+} aqr_fit_triangle;
+
+/* What a vertex has to do with a neighbour: a block of the matrix, xx yy zz xy xz yz. */
+typedef struct aqr_fit_link
+{
+  aqr_index to; /* AQR_NONE: no further neighbours */
+  float block[6];
+} aqr_fit_link;
+
+/* What threads write to without waiting for each other. */
+typedef _Atomic(uint8_t) aqr_fit_flag;
+
+typedef struct aqr_fitter
+{
+  const aqr_surface* s;
+  const double* normals; /* of the surface, 3 per point, or NULL */
+  aqr_polygon_mesh* m;
+  size_t n_triangles;
+  size_t* first; /* per face: its first triangle; n_faces + 1 */
+  aqr_fit_triangle* triangles;
+  size_t* first_corner; /* per vertex, into `corners`; n_vertices + 2 */
+  aqr_index* corners;   /* 3 * triangle + corner */
+  aqr_fit_link* links;  /* per vertex: one more than its corners, as a fan has at most so many neighbours */
+  vec3 *move, *residual, *direction, *image, *before;
+  vec3* across;        /* per edge: along the surface and across the edge, scaled by the root of what holds it */
+  double* trace;       /* per vertex: of its part of the error */
+  double* block;       /* per vertex: its own block of the matrix, as in link */
+  double* inverse;     /* of it; 0 where the vertex stays */
+  double* product;     /* per vertex: its term of the sum that the solver takes next */
+  double* error;       /* per vertex: of its triangles, before the last move */
+  uint8_t* back;       /* per vertex: the last move was damped or taken back */
+  aqr_fit_flag* folds; /* per vertex: at a corner that folds */
+  aqr_fit_flag folded; /* any does */
+  double hold;         /* along the surface */
+  double step;         /* of the solver along the direction, or how much of the last direction the next one keeps */
+  double keep;         /* of moves that fold */
+} aqr_fitter;
+
+/* Fills `move` from the samples' planes and distances, what holds the vertices, and `hold`. */
+aqr_status aqr_fit_solve(aqr_context* c, aqr_fitter* f, double at);
+
+#endif
