@@ -96,6 +96,13 @@ static inline bool aqr_pm_on_border(const aqr_polygon_mesh* m, aqr_index v)
   return m->half_edges[m->vertices[v].out].face == AQR_NONE;
 }
 
+/* Makes b the half-edge after a in its loop. */
+static inline void aqr_pm_link(aqr_polygon_mesh* m, aqr_index a, aqr_index b)
+{
+  m->half_edges[a].next = b;
+  m->half_edges[b].prev = a;
+}
+
 size_t aqr_pm_valence(const aqr_polygon_mesh* m, aqr_index v);
 size_t aqr_pm_face_size(const aqr_polygon_mesh* m, aqr_index f);
 /* The half-edge from u to v, AQR_NONE where there is none. */
