@@ -16,15 +16,15 @@ static double position_on(const aqr_regions* r, aqr_index h, const aqr_border_ma
 }
 
 /* Halfway from a position on half-edge k to the next mark, kept or not, or to the end of the half-edge. */
-static double halfway(const aqr_regions* r, unsigned k, double from, bool forward)
+static double halfway(const aqr_regions* r, unsigned k, double from)
 {
   size_t first, end;
   aqr_layout_marks_on(&r->at, k, &first, &end);
-  double to = forward ? 1 : 0;
+  double to = 1;
   for (size_t i = first; i < end; i++)
   {
     double t = position_on(r, 3 * r->at.face + k, &r->at.marks[i]);
-    if (forward ? t > from && t < to : t < from && t > to)
+    if (t > from && t < to)
       to = t;
   }
   return (from + to) / 2;
@@ -57,7 +57,7 @@ static aqr_status add_pieces_on(const aqr_regions* r, aqr_region_cells* g, unsig
     if (!last && !a->marks[i].kept)
       continue;
     p.to = last ? aqr_to(s, h) : vertex_beside(r, &a->marks[i], false);
-    p.t = halfway(r, k, start, true);
+    p.t = halfway(r, k, start);
     aqr_status status = add_piece(r->c, g, p);
     if (status != AQR_OK || last)
       return status;
@@ -89,7 +89,7 @@ static aqr_status add_contacts(const aqr_regions* r, aqr_region_cells* g, aqr_in
       .to = vertex_beside(r, &a->marks[next], true),
       .is_contact = true,
       .is_chord = true };
-    p.t = halfway(r, h % 3, position_on(r, h, &a->marks[i]), true);
+    p.t = halfway(r, h % 3, position_on(r, h, &a->marks[i]));
     aqr_status status = add_piece(r->c, g, p);
     if (status != AQR_OK)
       return status;
