@@ -30,22 +30,22 @@ typedef struct finder
   uint64_t* pairs;      /* of each of them */
 } finder;
 
-/* The first of a face's segments from i on that is a chord, not on a chain; or AQR_NONE. */
-static aqr_index chord_from(const aqr_lines* l, aqr_index i)
+/* The first in the list of face f from i on that is not on a chain; or AQR_NONE. */
+static aqr_index chord_from(const aqr_lines* l, aqr_index i, aqr_index f)
 {
-  while (i != AQR_NONE && l->lines[l->segments[i].line].is_chain)
-    i = l->segments[i].next;
+  while (i != AQR_NONE && l->lines[l->samples[i].line].is_chain)
+    i = aqr_next_chord(l, i, f);
   return i;
 }
 
-static aqr_index next_chord(const aqr_lines* l, aqr_index i)
+static aqr_index next_chord(const aqr_lines* l, aqr_index i, aqr_index f)
 {
-  return chord_from(l, l->segments[i].next);
+  return chord_from(l, aqr_next_chord(l, i, f), f);
 }
 
 static pair_state look_at(const finder* b, aqr_index f, aqr_index i, aqr_index j)
 {
-  const aqr_sample *p = &b->l->samples[b->l->segments[i].sample], *q = &b->l->samples[b->l->segments[j].sample];
+  const aqr_sample *p = &b->l->samples[i], *q = &b->l->samples[j];
   int turn = aqr_chords_cross(b->s, f, p, p + 1, q, q + 1);
   return turn == 0 ? apart : turn > 0 ? crosses_left : crosses_right;
 }
@@ -55,8 +55,8 @@ static uint64_t pairs_of(const finder* b, aqr_index f)
   const aqr_lines* l = b->l;
   uint64_t pairs = 0;
   unsigned n = 0;
-  for (aqr_index i = chord_from(l, l->head[f]); i != AQR_NONE; i = next_chord(l, i))
-    for (aqr_index j = next_chord(l, i); j != AQR_NONE; j = next_chord(l, j), n++)
+  for (aqr_index i = chord_from(l, l->head[f], f); i != AQR_NONE; i = next_chord(l, i, f))
+    for (aqr_index j = next_chord(l, i, f); j != AQR_NONE; j = next_chord(l, j, f), n++)
     {
       if (n == pairs_held)
         return pairs | (uint64_t)not_looked_at << (2 * n);
@@ -77,8 +77,8 @@ static aqr_status add_crossings(finder* b, aqr_index f, uint64_t pairs)
 {
   const aqr_lines* l = b->l;
   aqr_network* net = b->net;
-  for (aqr_index i = chord_from(l, l->head[f]); i != AQR_NONE && pairs; i = next_chord(l, i))
-    for (aqr_index j = next_chord(l, i); j != AQR_NONE && pairs; j = next_chord(l, j))
+  for (aqr_index i = chord_from(l, l->head[f], f); i != AQR_NONE && pairs; i = next_chord(l, i, f))
+    for (aqr_index j = next_chord(l, i, f); j != AQR_NONE && pairs; j = next_chord(l, j, f))
     {
       pair_state state = (pair_state)(pairs & 3);
       if (state == not_looked_at)
@@ -89,9 +89,8 @@ static aqr_status add_crossings(finder* b, aqr_index f, uint64_t pairs)
         continue;
       if (!AQR_RESERVE(b->c, net->crossings, net->crossing_capacity, net->n_crossings + 1))
         return AQR_OUT_OF_MEMORY;
-      net->crossings[net->n_crossings++] =
-        (aqr_crossing){ { l->segments[i].sample, l->segments[j].sample }, { l->segments[i].line, l->segments[j].line },
-          { AQR_NONE, AQR_NONE }, { AQR_NONE, AQR_NONE }, (int8_t)(state == crosses_left ? 1 : -1), true };
+      net->crossings[net->n_crossings++] = (aqr_crossing){ { i, j }, { l->samples[i].line, l->samples[j].line },
+        { AQR_NONE, AQR_NONE }, { AQR_NONE, AQR_NONE }, (int8_t)(state == crosses_left ? 1 : -1), true };
     }
   return AQR_OK;
 }

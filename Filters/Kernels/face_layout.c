@@ -91,26 +91,26 @@ static bool gather_marks(
   aqr_context* c, const aqr_surface* s, const aqr_lines* lines, const aqr_network* net, aqr_index f, aqr_layout* a)
 {
   size_t n = 1;
-  for (aqr_index k = lines->head[f]; k != AQR_NONE; k = lines->segments[k].next)
+  for (aqr_index k = lines->head[f]; k != AQR_NONE; k = aqr_next_chord(lines, k, f))
     n += 2;
   if (!reserve(c, a, n))
     return false;
   a->face = f;
   a->n_marks = 0;
   bool any = false;
-  for (aqr_index k = lines->head[f]; k != AQR_NONE; k = lines->segments[k].next)
+  for (aqr_index k = lines->head[f]; k != AQR_NONE; k = aqr_next_chord(lines, k, f))
   {
-    aqr_index sample = lines->segments[k].sample, line = lines->segments[k].line;
+    aqr_index line = lines->samples[k].line;
     if (lines->lines[line].is_chain)
       continue;
     for (aqr_index i = 0; i < 2; i++)
     {
-      aqr_border_mark m = { .sample = sample + i,
-        .chord = sample,
+      aqr_border_mark m = { .sample = k + i,
+        .chord = k,
         .line = line,
-        .half_edge = aqr_sample_half_edge(s, &lines->samples[sample + i], f),
+        .half_edge = aqr_sample_half_edge(s, &lines->samples[k + i], f),
         .starts = i == 0,
-        .kept = net->edge_at[sample + i] != AQR_NONE };
+        .kept = net->edge_at[k + i] != AQR_NONE };
       any |= m.kept;
       size_t j = a->n_marks++;
       for (; j > 0 && before(lines, &m, &a->marks[j - 1]); j--)

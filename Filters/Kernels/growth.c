@@ -64,8 +64,7 @@ static aqr_status enter_provisionally(
   for (; *entered + 2 < t->n_samples; ++*entered)
   {
     size_t n = l->n_samples + g->provisional;
-    if (!AQR_RESERVE(c, l->samples, l->sample_capacity, n + 2) ||
-        !AQR_RESERVE(c, l->segments, l->segment_capacity, l->n_segments + 1))
+    if (!AQR_RESERVE(c, l->samples, l->sample_capacity, n + 2))
       return AQR_OUT_OF_MEMORY;
     const aqr_sample* a = &t->samples[*entered];
     l->samples[n] = a[0];
@@ -73,22 +72,23 @@ static aqr_status enter_provisionally(
     l->samples[n].arc = (float)(sign * *arc);
     *arc += v3_norm(v3_sub(a[1].p, a->p));
     l->samples[n + 1].arc = (float)(sign * *arc);
-    l->segments[l->n_segments] = (aqr_segment){ (aqr_index)n, (aqr_index)l->n_lines, l->head[a->face] };
-    l->head[a->face] = (aqr_index)l->n_segments++;
+    l->samples[n].line = (aqr_index)l->n_lines;
+    l->samples[n].next = l->head[a->face];
+    l->head[a->face] = (aqr_index)n;
     g->provisional += 2;
   }
   return AQR_OK;
 }
 
-static void leave(aqr_grower* g, size_t n_segments)
+/* Takes the provisional samples out of the lists again. */
+static void leave(aqr_grower* g)
 {
   aqr_lines* l = g->lines;
-  while (l->n_segments > n_segments)
+  for (; g->provisional; g->provisional -= 2)
   {
-    const aqr_segment* k = &l->segments[--l->n_segments];
-    l->head[l->samples[k->sample].face] = k->next;
+    const aqr_sample* a = &l->samples[l->n_samples + g->provisional - 2];
+    l->head[a->face] = a->next;
   }
-  g->provisional = 0;
 }
 
 /* Steers to the sample of the growing line that its head has met, so that the line closes. The
@@ -268,7 +268,6 @@ aqr_status aqr_grow_inside(aqr_context* c, aqr_grower* g, const aqr_place* at, v
 {
   aqr_status status = AQR_OK;
   aqr_tracer* t = &g->tracer;
-  size_t n_segments = g->lines->n_segments;
   aqr_line_end ends[2] = { AQR_END_LENGTH, AQR_END_LENGTH };
   aqr_tracer_start(t, at, direction);
   aqr_tracer_align(t);
@@ -310,7 +309,7 @@ aqr_status aqr_grow_inside(aqr_context* c, aqr_grower* g, const aqr_place* at, v
   g->line.ends[0] = (uint8_t)ends[0];
   g->line.ends[1] = (uint8_t)ends[1];
 done:
-  leave(g, n_segments);
+  leave(g);
   describe(g);
   return status;
 }
@@ -320,7 +319,6 @@ aqr_status aqr_grow_from_border(aqr_context* c, aqr_grower* g, aqr_index h, doub
   aqr_status status = AQR_OK;
   const aqr_surface* s = g->surface;
   aqr_tracer* t = &g->tracer;
-  size_t n_segments = g->lines->n_segments;
   aqr_index edge = aqr_edge_of(s, h);
   aqr_place place = { aqr_face_of(h), { 0, 0, 0 } };
   place.bary[h % 3] = 1 - at;
@@ -346,7 +344,7 @@ aqr_status aqr_grow_from_border(aqr_context* c, aqr_grower* g, aqr_index h, doub
   g->line.ends[0] = aqr_is_seam(s, h) ? AQR_END_FEATURE : AQR_END_BOUNDARY;
   g->line.ends[1] = (uint8_t)end;
 done:
-  leave(g, n_segments);
+  leave(g);
   describe(g);
   return status;
 }

@@ -19,7 +19,7 @@ void aqr_lines_free(aqr_context* c, aqr_lines* l)
 {
   AQR_DROP(c, l->lines, l->line_capacity);
   AQR_DROP(c, l->samples, l->sample_capacity);
-  AQR_DROP(c, l->segments, l->segment_capacity);
+  AQR_DROP(c, l->across, l->across_capacity);
   AQR_DROP(c, l->head, l->n_faces);
   memset(l, 0, sizeof *l);
 }
@@ -47,12 +47,6 @@ int aqr_chords_cross(const aqr_surface* s, aqr_index f, const aqr_sample* a0, co
   return end == turn ? 1 : -1;
 }
 
-static void enter(aqr_lines* l, aqr_index face, aqr_index sample, aqr_index line)
-{
-  l->segments[l->n_segments] = (aqr_segment){ sample, line, l->head[face] };
-  l->head[face] = (aqr_index)l->n_segments++;
-}
-
 /* A line and its continuation over a seam meet it at one place: what else meets it there lies to the same side of both.
  */
 static void share_place(aqr_lines* l, size_t sample, aqr_index partner)
@@ -70,14 +64,19 @@ aqr_status aqr_lines_add(
     return AQR_TOO_LARGE;
   if (!AQR_RESERVE(c, l->lines, l->line_capacity, l->n_lines + 1) ||
       !AQR_RESERVE(c, l->samples, l->sample_capacity, l->n_samples + n) ||
-      !AQR_RESERVE(c, l->segments, l->segment_capacity, l->n_segments + 2 * n))
+      (line->is_chain && !AQR_RESERVE(c, l->across, l->across_capacity, l->n_samples + n)))
     return AQR_OUT_OF_MEMORY;
   aqr_index id = (aqr_index)l->n_lines++;
   l->lines[id] = *line;
   l->lines[id].first = l->n_samples;
   memcpy(l->samples + l->n_samples, samples, n * sizeof *samples);
   for (size_t i = 0; i < n; i++)
-    l->samples[l->n_samples + i].key = (aqr_index)(l->n_samples + i);
+  {
+    aqr_sample* a = &l->samples[l->n_samples + i];
+    a->key = (aqr_index)(l->n_samples + i);
+    a->line = id;
+    a->next = AQR_NONE;
+  }
   if (line->closed) /* the closing sample is the first one again */
     l->samples[l->n_samples + n - 1].key = (aqr_index)l->n_samples;
   for (unsigned k = 0; k < 2; k++)
@@ -85,11 +84,14 @@ aqr_status aqr_lines_add(
       share_place(l, l->n_samples + (k ? n - 1 : 0), line->partner[k]);
   for (size_t i = 0; i + 1 < n; i++)
   {
-    aqr_index k = (aqr_index)(l->n_samples + i);
-    enter(l, samples[i].face, k, id);
+    aqr_index k = (aqr_index)(l->n_samples + i), *head = &l->head[samples[i].face];
+    l->samples[k].next = *head;
+    *head = k;
     aqr_index other = line->is_chain ? aqr_any_twin(s, samples[i].edge) : AQR_NONE;
-    if (other != AQR_NONE)
-      enter(l, aqr_face_of(other), k, id);
+    if (other == AQR_NONE)
+      continue;
+    l->across[k] = l->head[aqr_face_of(other)];
+    l->head[aqr_face_of(other)] = k;
   }
   l->n_samples += n;
   return AQR_OK;

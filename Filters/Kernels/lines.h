@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Lines on the surface, and the lists of their segments per face (paper 3.2).
+/* Lines on the surface, and the lists of their chords per face (paper 3.2).
  *
  * A curvature line is a sequence of samples, each the crossing of one edge of the surface; between
  * two samples it is one straight chord inside one face. Whether two chords of a face cross is then
@@ -13,10 +13,12 @@
 typedef struct aqr_sample
 {
   vec3 p;
+  aqr_index line; /* set by aqr_lines_add, as are next and key */
+  aqr_index next; /* the sample whose chord is the next in the list of `face`, or AQR_NONE */
   double t;       /* position along `edge`, inside (0, 1); 0 on chains */
   aqr_index edge; /* the edge crossed: the smaller of its two half-edges; on chains the half-edge itself */
   aqr_index face; /* of the chord from this sample to the next; of the previous chord for the last sample */
-  aqr_index key;  /* breaks ties of t along an edge; set by aqr_lines_add */
+  aqr_index key;  /* breaks ties of t along an edge */
   float arc;      /* length since the first sample */
   float sigma;    /* spacings of crossing lines passed since the first sample */
   uint8_t isotropic;
@@ -32,29 +34,30 @@ typedef struct aqr_line
   aqr_index partner[2]; /* sample on the other side of the seam that the end continues, or AQR_NONE */
 } aqr_line;
 
-typedef struct aqr_segment
-{
-  aqr_index sample, line, next;
-} aqr_segment;
-
 typedef struct aqr_lines
 {
   aqr_line* lines;
   size_t n_lines, line_capacity;
   aqr_sample* samples;
   size_t n_samples, sample_capacity;
-  aqr_segment* segments;
-  size_t n_segments, segment_capacity;
-  aqr_index* head; /* per face: its newest segment, or AQR_NONE */
+  aqr_index* across; /* per sample of a chain: as its `next`, in the list of the face on the other side */
+  size_t across_capacity;
+  aqr_index* head; /* per face: the sample that its newest chord starts at, or AQR_NONE */
   size_t n_faces;
 } aqr_lines;
 
 aqr_status aqr_lines_init(aqr_context* c, const aqr_surface* s, aqr_lines* l);
 void aqr_lines_free(aqr_context* c, aqr_lines* l);
 
-/* Appends a line with copies of its samples and enters its segments into the faces' lists. */
+/* Appends a line with copies of its samples and enters its chords into the faces' lists. Chains come first. */
 aqr_status aqr_lines_add(
   aqr_context* c, aqr_lines* l, const aqr_surface* s, const aqr_line* line, const aqr_sample* samples);
+
+/* The chord that comes after that of sample n in the list of face f. */
+static inline aqr_index aqr_next_chord(const aqr_lines* l, aqr_index n, aqr_index f)
+{
+  return l->samples[n].face == f ? l->samples[n].next : l->across[n];
+}
 
 /* The half-edge of face f that lies on the sample's edge. */
 static inline aqr_index aqr_sample_half_edge(const aqr_surface* s, const aqr_sample* a, aqr_index f)

@@ -20,13 +20,14 @@ static bool landing_on(const aqr_network_builder* b, const aqr_sample* a, aqr_st
 {
   const aqr_lines* l = b->l;
   aqr_index other = aqr_any_twin(b->s, a->edge);
-  for (aqr_index k = l->head[aqr_face_of(a->edge)]; k != AQR_NONE; k = l->segments[k].next)
+  const aqr_index f = aqr_face_of(a->edge);
+  for (aqr_index k = l->head[f]; k != AQR_NONE; k = aqr_next_chord(l, k, f))
   {
-    aqr_index e = l->samples[l->segments[k].sample].edge;
-    if (!l->lines[l->segments[k].line].is_chain || (e != a->edge && e != other))
+    aqr_index e = l->samples[k].edge;
+    if (!l->lines[l->samples[k].line].is_chain || (e != a->edge && e != other))
       continue;
     bool forward = e == a->edge;
-    *stop = (aqr_stop){ l->segments[k].line, l->segments[k].sample, forward ? a->t : 1 - a->t, forward ? a->t : -a->t,
+    *stop = (aqr_stop){ l->samples[k].line, k, forward ? a->t : 1 - a->t, forward ? a->t : -a->t,
       forward ? (int64_t)a->key : -(int64_t)a->key, AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
     return true;
   }

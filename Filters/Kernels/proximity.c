@@ -101,13 +101,13 @@ static aqr_status extend(aqr_context* c, aqr_pcell* cell, const aqr_probe* probe
   return AQR_OK;
 }
 
-/* The segments of the direction's family in one face. */
+/* The chords of the direction's family in one face. */
 static void look(const aqr_lines* lines, aqr_index face, const aqr_probe* probe, double* nearest2, aqr_near* found)
 {
-  for (aqr_index k = lines->head[face]; k != AQR_NONE; k = lines->segments[k].next)
+  for (aqr_index n = lines->head[face]; n != AQR_NONE; n = aqr_next_chord(lines, n, face))
   {
-    aqr_index n = lines->segments[k].sample, line = lines->segments[k].line;
     const aqr_sample* a = &lines->samples[n];
+    aqr_index line = a->line;
     vec3 d = v3_sub(a[1].p, a->p);
     double along = v3_dot(d, probe->direction);
     if (along * along < family_cosine2 * v3_norm2(d))

@@ -147,19 +147,16 @@ static void part_marks(aqr_regions* r, unsigned k)
 static bool has_some_to_cut(const aqr_regions* r, aqr_index f)
 {
   bool whole = true;
-  for (aqr_index k = r->lines->head[f]; k != AQR_NONE; k = r->lines->segments[k].next)
-  {
-    const aqr_segment* chord = &r->lines->segments[k];
-    for (aqr_index i = 0; i < 2 && !r->lines->lines[chord->line].is_chain; i++)
+  for (aqr_index k = r->lines->head[f]; k != AQR_NONE; k = aqr_next_chord(r->lines, k, f))
+    for (aqr_index i = 0; i < 2 && !r->lines->lines[r->lines->samples[k].line].is_chain; i++)
     {
-      aqr_border_mark m = { .sample = chord->sample + i, .starts = i == 0 };
+      aqr_border_mark m = { .sample = k + i, .starts = i == 0 };
       if (r->net->edge_at[m.sample] == AQR_NONE)
         continue;
       if (aqr_region_needs_cut(r, aqr_item_after(r->s, r->net, &m)))
         return true;
       whole = false;
     }
-  }
   return whole && aqr_region_needs_cut(r, f);
 }
 

@@ -61,10 +61,9 @@ static size_t kept_on(const aqr_layout* a, unsigned k)
 /* Unites the cells that border chains with the loops there, where no mark tells the loop already. */
 static void unite_with_chains(const aqr_regions* r, const aqr_layout* a)
 {
-  for (aqr_index k = r->lines->head[a->face]; k != AQR_NONE; k = r->lines->segments[k].next)
+  for (aqr_index n = r->lines->head[a->face]; n != AQR_NONE; n = aqr_next_chord(r->lines, n, a->face))
   {
-    aqr_index n = r->lines->segments[k].sample;
-    if (!r->lines->lines[r->lines->segments[k].line].is_chain)
+    if (!r->lines->lines[r->lines->samples[n].line].is_chain)
       continue;
     aqr_index left = r->lines->samples[n].edge, edge = r->net->edge_at[n];
     bool right = aqr_face_of(left) != a->face;

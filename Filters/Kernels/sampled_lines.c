@@ -98,14 +98,14 @@ static bool on_chain(const aqr_sampler* m, const aqr_sample* at, aqr_index* chai
 {
   const aqr_lines* l = m->lines;
   aqr_index other = aqr_any_twin(m->s, at->edge);
-  for (aqr_index k = l->head[aqr_face_of(at->edge)]; k != AQR_NONE; k = l->segments[k].next)
+  const aqr_index f = aqr_face_of(at->edge);
+  for (aqr_index n = l->head[f]; n != AQR_NONE; n = aqr_next_chord(l, n, f))
   {
-    aqr_index n = l->segments[k].sample;
     const aqr_sample* a = &l->samples[n];
-    if (!l->lines[l->segments[k].line].is_chain || (a->edge != at->edge && a->edge != other))
+    if (!l->lines[a->line].is_chain || (a->edge != at->edge && a->edge != other))
       continue;
     double t = a->edge == at->edge ? at->t : 1 - at->t;
-    *chain = l->segments[k].line;
+    *chain = a->line;
     *sigma = (double)a->sigma + t * (double)(a[1].sigma - a->sigma);
     return true;
   }
@@ -159,10 +159,10 @@ static aqr_status mark_crossings(aqr_sampler* m, aqr_index id)
   for (size_t i = line->first; i + 1 < line->first + line->count; i++)
   {
     const aqr_sample* a = &l->samples[i];
-    for (aqr_index k = l->head[a->face]; k != AQR_NONE; k = l->segments[k].next)
+    for (aqr_index k = l->head[a->face]; k != AQR_NONE; k = aqr_next_chord(l, k, a->face))
     {
-      aqr_index other = l->segments[k].line;
-      const aqr_sample* b = &l->samples[l->segments[k].sample];
+      const aqr_sample* b = &l->samples[k];
+      aqr_index other = b->line;
       if (l->lines[other].is_chain || b == a || !aqr_chords_cross(m->s, a->face, a, a + 1, b, b + 1))
         continue;
       AQR_TRY(add_mark(m, id, crossing_at(a, b)));
@@ -188,10 +188,10 @@ static bool is_too_much(const aqr_sampler* m)
   if (!isfinite(most) || 2 * (double)a[line->count - 1].sigma < most) /* crossings are a spacing apart, seldom half */
     return false;
   for (size_t i = 0; i + 1 < line->count && added <= most; i++)
-    for (aqr_index k = l->head[a[i].face]; k != AQR_NONE; k = l->segments[k].next)
+    for (aqr_index k = l->head[a[i].face]; k != AQR_NONE; k = aqr_next_chord(l, k, a[i].face))
     {
-      const aqr_sample* b = &l->samples[l->segments[k].sample];
-      added += !l->lines[l->segments[k].line].is_chain && aqr_chords_cross(m->s, a[i].face, &a[i], &a[i + 1], b, b + 1);
+      const aqr_sample* b = &l->samples[k];
+      added += !l->lines[b->line].is_chain && aqr_chords_cross(m->s, a[i].face, &a[i], &a[i + 1], b, b + 1);
     }
   return added > most;
 }
@@ -227,19 +227,20 @@ static line_end opposite_end(const aqr_sampler* m, const aqr_sample* at, vec3 d)
   double along, across;
   aqr_sizing_at(s, m->field, m->sizing, at->face, v3_unit(d), &along, &across);
   double nearest = join_distance * across;
-  for (aqr_index k = l->head[aqr_face_of(other)]; k != AQR_NONE; k = l->segments[k].next)
+  const aqr_index f = aqr_face_of(other);
+  for (aqr_index k = l->head[f]; k != AQR_NONE; k = aqr_next_chord(l, k, f))
   {
-    const aqr_line* line = &l->lines[l->segments[k].line];
+    const aqr_line* line = &l->lines[l->samples[k].line];
     for (unsigned i = 0; i < 2; i++)
     {
       size_t end = line->first + (i ? line->count - 1 : 0);
       const aqr_sample* a = &l->samples[end];
-      bool is_here = l->segments[k].sample + i == end && a->edge == at->edge && line->ends[i] == AQR_END_FEATURE;
+      bool is_here = k + i == end && a->edge == at->edge && line->ends[i] == AQR_END_FEATURE;
       double distance = v3_norm(v3_sub(a->p, at->p));
       if (!is_here || line->partner[i] != AQR_NONE || !(distance < nearest))
         continue;
       nearest = distance;
-      found = (line_end){ l->segments[k].line, (aqr_index)end, i };
+      found = (line_end){ l->samples[k].line, (aqr_index)end, i };
     }
   }
   return found;
