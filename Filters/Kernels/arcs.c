@@ -196,7 +196,8 @@ static void straighten(drawing* d, aqr_line* line)
   d->n_drawn = line->first + n;
 }
 
-/* Draws the arc over a link: from the network to the link on one side, from the link to the network on the other. */
+/* Draws the arc over a link: from the network to the link on one side, from the link to the network on the other. None
+ * where nothing is left of it. */
 static aqr_status draw(drawing* d, const link* l)
 {
   const aqr_region_cells* g = d->g;
@@ -223,7 +224,10 @@ static aqr_status draw(drawing* d, const link* l)
   }
   straighten(d, &line);
   if (line.count < 2)
+  {
+    d->n_drawn = line.first;
     goto done;
+  }
   for (size_t k = line.first + 1; k < d->n_drawn; k++)
     d->drawn[k].arc = d->drawn[k - 1].arc + (float)v3_norm(v3_sub(d->drawn[k].p, d->drawn[k - 1].p));
   AQR_REQUIRE(AQR_RESERVE(d->c, d->arcs, d->arc_capacity, d->n_arcs + 1), AQR_OUT_OF_MEMORY);
@@ -232,20 +236,25 @@ done:
   return status;
 }
 
-/* Claims the cells that the arc over a link passes; false where another arc of this round has one of them. */
-static bool claim(const aqr_region_cells* g, const link* l, uint8_t* taken)
+/* Whether no other arc of this round has a cell that the arc over a link passes. */
+static bool is_free(const aqr_region_cells* g, const link* l, const uint8_t* taken)
 {
   bool both = !g->pieces[l->piece].is_contact;
-  for (unsigned pass = 0; pass < 2; pass++)
-    for (unsigned k = 0; k < 1u + both; k++)
-      for (aqr_index i = g->pieces[k ? aqr_piece_across(g, l->piece) : l->piece].cell; i != AQR_NONE;
-           i = g->cells[i].before)
-      {
-        if (pass == 0 && taken[i])
-          return false;
-        taken[i] |= (uint8_t)pass;
-      }
+  for (unsigned k = 0; k < 1u + both; k++)
+    for (aqr_index i = g->pieces[k ? aqr_piece_across(g, l->piece) : l->piece].cell; i != AQR_NONE;
+         i = g->cells[i].before)
+      if (taken[i])
+        return false;
   return true;
+}
+
+static void take(const aqr_region_cells* g, const link* l, uint8_t* taken)
+{
+  bool both = !g->pieces[l->piece].is_contact;
+  for (unsigned k = 0; k < 1u + both; k++)
+    for (aqr_index i = g->pieces[k ? aqr_piece_across(g, l->piece) : l->piece].cell; i != AQR_NONE;
+         i = g->cells[i].before)
+      taken[i] = 1;
 }
 
 aqr_status aqr_arcs_draw(aqr_context* c, aqr_region_cells* g, aqr_lines* lines, size_t* added)
@@ -278,8 +287,14 @@ aqr_status aqr_arcs_draw(aqr_context* c, aqr_region_cells* g, aqr_lines* lines, 
   {
     if (gone[i])
       continue;
-    if (claim(g, &links[i], taken))
+    if (is_free(g, &links[i], taken))
+    {
+      size_t before = d.n_arcs;
       AQR_TRY(draw(&d, &links[i]));
+      if (d.n_arcs == before)
+        continue; /* between two chords that end on one edge: another link around the same hole will do */
+      take(g, &links[i], taken);
+    }
     gone[i] = 1;
     hang(g, hubs, links, i, true);
     strip(g, hubs, links, gone, g->pieces[links[i].piece].from);

@@ -2,11 +2,13 @@
 /* From the layouts of faces to cells and pieces, with room for an arc between any two chords. */
 #include "region_cells.h"
 
-/* Vertices of the graph that pieces run between: points of the surface, and both sides of the samples. */
+/* Vertices of the graph that pieces run between: points of the surface, and both sides of the samples. The last sample
+ * of a closed line is its first. */
 static aqr_index vertex_beside(const aqr_regions* r, const aqr_border_mark* m, bool after)
 {
-  bool right = m->starts == after;
-  return (aqr_index)(r->s->n_points + 2 * (size_t)m->sample + right);
+  const aqr_line* line = &r->lines->lines[m->line];
+  bool right = m->starts == after, closes = line->closed && m->sample == line->first + line->count - 1;
+  return (aqr_index)(r->s->n_points + 2 * (closes ? line->first : (size_t)m->sample) + right);
 }
 
 static double position_on(const aqr_regions* r, aqr_index h, const aqr_border_mark* m)

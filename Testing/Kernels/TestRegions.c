@@ -135,6 +135,58 @@ AQR_TEST(a_tube_far_thinner_than_its_faces_are_long_is_cut)
   drawing_free(&d);
 }
 
+/* A closed line around vertex v that crosses the edges there at t and u in turn. */
+static void add_zigzag(drawing* d, aqr_index v, double t, double u)
+{
+  const aqr_surface* s = &d->e.s;
+  aqr_sample samples[20];
+  size_t n = 0;
+  aqr_index h = s->fan[v];
+  do
+  {
+    samples[n] = place_on(d, h, n % 2 ? u : t, aqr_face_of(aqr_twin(s, h)));
+    n++;
+    h = aqr_next(aqr_twin(s, h));
+  } while (h != s->fan[v]);
+  samples[n] = samples[0];
+  add(d, samples, n + 1, true);
+}
+
+/* Two pairs of closed lines around a vertex, and between them no vertex of the surface: which chords and edges an arc
+ * leads over is left to how the faces are numbered. */
+AQR_TEST(an_annulus_no_wider_than_a_face_gets_one_arc)
+{
+  unsigned tried = 0;
+  for (aqr_index v = 0;; v++)
+  {
+    drawing d = draw_on(shape_sphere(5, 1));
+    const aqr_surface* s = &d.e.s;
+    if (v >= s->n_points)
+    {
+      drawing_free(&d);
+      break;
+    }
+    size_t valence = 0;
+    aqr_index h = s->fan[v];
+    do
+    {
+      valence++;
+      h = aqr_next_around(s, h);
+    } while (h != s->fan[v]);
+    if (valence % 2 == 0)
+    {
+      const double at[4] = { 0.2, 0.4, 0.6, 0.8 };
+      for (unsigned i = 0; i < 4; i++)
+        add_zigzag(&d, v, at[i], at[i ^ 1]);
+      outcome r = cut(&d);
+      CHECK(r.total == 1 && r.euler == 2);
+      tried++;
+    }
+    drawing_free(&d);
+  }
+  CHECK(tried > 30);
+}
+
 /* Three lines that cross in one face and end there cut nothing off, so they must not count as a region's border. */
 AQR_TEST(lines_that_cross_in_one_face_only_are_no_network)
 {
