@@ -236,25 +236,19 @@ done:
   return status;
 }
 
-/* Whether no other arc of this round has a cell that the arc over a link passes. */
-static bool is_free(const aqr_region_cells* g, const link* l, const uint8_t* taken)
+/* Whether another arc of this round has one of the cells that the arc over a link passes; `take`: all are its own then.
+ */
+static bool is_taken(const aqr_region_cells* g, const link* l, uint8_t* taken, bool take)
 {
-  bool both = !g->pieces[l->piece].is_contact;
+  bool both = !g->pieces[l->piece].is_contact, any = false;
   for (unsigned k = 0; k < 1u + both; k++)
     for (aqr_index i = g->pieces[k ? aqr_piece_across(g, l->piece) : l->piece].cell; i != AQR_NONE;
          i = g->cells[i].before)
-      if (taken[i])
-        return false;
-  return true;
-}
-
-static void take(const aqr_region_cells* g, const link* l, uint8_t* taken)
-{
-  bool both = !g->pieces[l->piece].is_contact;
-  for (unsigned k = 0; k < 1u + both; k++)
-    for (aqr_index i = g->pieces[k ? aqr_piece_across(g, l->piece) : l->piece].cell; i != AQR_NONE;
-         i = g->cells[i].before)
-      taken[i] = 1;
+    {
+      any |= taken[i];
+      taken[i] |= take;
+    }
+  return any;
 }
 
 aqr_status aqr_arcs_draw(aqr_context* c, aqr_region_cells* g, aqr_lines* lines, size_t* added)
@@ -287,13 +281,13 @@ aqr_status aqr_arcs_draw(aqr_context* c, aqr_region_cells* g, aqr_lines* lines, 
   {
     if (gone[i])
       continue;
-    if (is_free(g, &links[i], taken))
+    if (!is_taken(g, &links[i], taken, false))
     {
       size_t before = d.n_arcs;
       AQR_TRY(draw(&d, &links[i]));
       if (d.n_arcs == before)
         continue; /* between two chords that end on one edge: another link around the same hole will do */
-      take(g, &links[i], taken);
+      is_taken(g, &links[i], taken, true);
     }
     gone[i] = 1;
     hang(g, hubs, links, i, true);
