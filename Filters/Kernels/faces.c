@@ -52,27 +52,19 @@ static double face_cost(
   return g.n < 3 ? 0 : aqr_polygon_cost(&g);
 }
 
-/* Four corners, all different half-edges. */
-static bool is_quad(const aqr_polygon_mesh* m, aqr_index f)
-{
-  aqr_index h = m->faces[f];
-  return aqr_pm_next(m, aqr_pm_next(m, h)) == aqr_pm_prev(m, aqr_pm_prev(m, h)) &&
-         aqr_pm_next(m, aqr_pm_next(m, h)) != h && aqr_pm_next(m, aqr_pm_next(m, aqr_pm_next(m, h))) != h;
-}
-
 /* Contraction between such faces, lines that go on, and redrawing never make anything else of a quad. */
 static bool is_odd(const aqr_polygon_mesh* m, aqr_index f, const void* options)
 {
   (void)options;
-  return m->faces[f] != AQR_NONE && !is_quad(m, f);
+  return m->faces[f] != AQR_NONE && !aqr_pm_is_quad(m, f);
 }
 
 /* Whether both faces beside h have other than four corners. */
 static bool between_odd_faces(const aqr_polygon_mesh* m, const aqr_marks* odd, aqr_index h)
 {
   aqr_index f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
-  return f != AQR_NONE && g != AQR_NONE && aqr_is_marked(odd, f) && aqr_is_marked(odd, g) && !is_quad(m, f) &&
-         !is_quad(m, g);
+  return f != AQR_NONE && g != AQR_NONE && aqr_is_marked(odd, f) && aqr_is_marked(odd, g) && !aqr_pm_is_quad(m, f) &&
+         !aqr_pm_is_quad(m, g);
 }
 
 /* ---- contraction ---- */
@@ -279,18 +271,6 @@ static aqr_status partition_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index 
   return p.cost < INFINITY ? draw(c, m, corner, &p) : AQR_OK;
 }
 
-/* The vector area of a face. */
-static vec3 area_of(const aqr_polygon_mesh* m, aqr_index f)
-{
-  vec3 p = aqr_pm_point(m, aqr_pm_from(m, m->faces[f])), sum = v3(0, 0, 0);
-  for (aqr_index h = aqr_pm_next(m, m->faces[f]); h != m->faces[f]; h = aqr_pm_next(m, h))
-  {
-    vec3 a = aqr_pm_point(m, aqr_pm_from(m, h)), b = aqr_pm_point(m, aqr_pm_to(m, h));
-    sum = v3_add(sum, v3_cross(v3_sub(a, p), v3_sub(b, p)));
-  }
-  return sum;
-}
-
 /* How far the two angles that a diagonal to `to` makes at a corner are from right angles; infinite outside the face,
  * whose normal is the one at vertices of creases. */
 static double diagonal_angles(const aqr_polygon_mesh* m, aqr_index h, aqr_index to, vec3 normal)
@@ -311,7 +291,7 @@ static aqr_status split_large(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, 
   aqr_index h = m->faces[f], best[2] = { AQR_NONE, AQR_NONE };
   double least = INFINITY, perimeter = 0;
   size_t stride = n / split_candidates + 1;
-  vec3 normal = v3_unit_or(area_of(m, f), m->vertices[aqr_pm_from(m, h)].normal);
+  vec3 normal = v3_unit_or(aqr_pm_area(m, f), m->vertices[aqr_pm_from(m, h)].normal);
   for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))
     perimeter += edge_length(m, h);
   for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))

@@ -34,6 +34,11 @@ typedef struct aqr_line
   aqr_index partner[2]; /* sample on the other side of the seam that the end continues, or AQR_NONE */
 } aqr_line;
 
+static inline bool aqr_ends_on_chain(const aqr_line* line, unsigned end)
+{
+  return line->ends[end] == AQR_END_BOUNDARY || line->ends[end] == AQR_END_FEATURE;
+}
+
 typedef struct aqr_lines
 {
   aqr_line* lines;

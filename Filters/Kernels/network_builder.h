@@ -21,11 +21,6 @@ typedef struct aqr_network_builder
   aqr_index* node_of; /* per cleaned point: the stop of a node of the feature graph */
 } aqr_network_builder;
 
-static inline bool aqr_ends_on_chain(const aqr_line* line, unsigned end)
-{
-  return line->ends[end] == AQR_END_BOUNDARY || line->ends[end] == AQR_END_FEATURE;
-}
-
 static inline bool aqr_line_lives(const aqr_network_builder* b, aqr_index line)
 {
   return b->l->lines[line].is_chain || b->alive[line] >= 2;

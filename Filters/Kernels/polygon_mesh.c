@@ -30,6 +30,17 @@ size_t aqr_pm_face_size(const aqr_polygon_mesh* m, aqr_index f)
   return n;
 }
 
+vec3 aqr_pm_area(const aqr_polygon_mesh* m, aqr_index f)
+{
+  vec3 p = aqr_pm_point(m, aqr_pm_from(m, m->faces[f])), sum = v3(0, 0, 0);
+  for (aqr_index h = aqr_pm_next(m, m->faces[f]); h != m->faces[f]; h = aqr_pm_next(m, h))
+  {
+    vec3 a = aqr_pm_point(m, aqr_pm_from(m, h)), b = aqr_pm_point(m, aqr_pm_to(m, h));
+    sum = v3_add(sum, v3_cross(v3_sub(a, p), v3_sub(b, p)));
+  }
+  return sum;
+}
+
 aqr_index aqr_pm_find(const aqr_polygon_mesh* m, aqr_index u, aqr_index v)
 {
   /* Both orbits are walked in step, so that the cost is that of the smaller one. */

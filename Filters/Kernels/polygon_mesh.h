@@ -103,8 +103,18 @@ static inline void aqr_pm_link(aqr_polygon_mesh* m, aqr_index a, aqr_index b)
   m->half_edges[b].prev = a;
 }
 
+/* Four corners, all different half-edges. */
+static inline bool aqr_pm_is_quad(const aqr_polygon_mesh* m, aqr_index f)
+{
+  aqr_index h = m->faces[f];
+  return aqr_pm_next(m, aqr_pm_next(m, h)) == aqr_pm_prev(m, aqr_pm_prev(m, h)) &&
+         aqr_pm_next(m, aqr_pm_next(m, h)) != h && aqr_pm_next(m, aqr_pm_next(m, aqr_pm_next(m, h))) != h;
+}
+
 size_t aqr_pm_valence(const aqr_polygon_mesh* m, aqr_index v);
 size_t aqr_pm_face_size(const aqr_polygon_mesh* m, aqr_index f);
+/* Twice the vector area of a face: along its normal. */
+vec3 aqr_pm_area(const aqr_polygon_mesh* m, aqr_index f);
 /* The half-edge from u to v, AQR_NONE where there is none. */
 aqr_index aqr_pm_find(const aqr_polygon_mesh* m, aqr_index u, aqr_index v);
 /* Whether faces f and g have the same set of vertices. */

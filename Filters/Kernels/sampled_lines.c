@@ -150,7 +150,7 @@ static double crossing_at(const aqr_sample* a, const aqr_sample* b)
   return (double)a->sigma + t * (double)(a[1].sigma - a->sigma);
 }
 
-/* Marks a new line and those it crosses. Every segment is listed already, so pairs within the line are met twice. */
+/* Marks a new line and those it crosses. Every chord is listed already, so pairs within the line are met twice. */
 static aqr_status mark_crossings(aqr_sampler* m, aqr_index id)
 {
   const aqr_lines* l = m->lines;
@@ -201,7 +201,7 @@ static bool worth_keeping(const aqr_line* line, const aqr_sample* samples)
 {
   if (line->count < 2)
     return false;
-  if (aqr_ends_on_border(line->ends[0]) && aqr_ends_on_border(line->ends[1]))
+  if (aqr_ends_on_chain(line, 0) && aqr_ends_on_chain(line, 1))
     return true;
   if (line->closed) /* around something larger than the spacing, not winding about a spike */
     return samples[line->count - 1].sigma > 1;
@@ -291,7 +291,7 @@ static aqr_status commit(aqr_sampler* m, aqr_index partner, aqr_index* id)
   if (status == AQR_OK)
     status = mark_crossings(m, *id);
   for (unsigned i = 0; i < 2 && status == AQR_OK; i++)
-    if (aqr_ends_on_border(g->line.ends[i]) && g->line.partner[i] == AQR_NONE)
+    if (aqr_ends_on_chain(&g->line, i) && g->line.partner[i] == AQR_NONE)
       status = land(m, &g->samples[i ? g->line.count - 1 : 0]);
   return status;
 }

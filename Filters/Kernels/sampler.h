@@ -55,11 +55,6 @@ static inline bool aqr_is_full(const aqr_sampler* m)
   return m->points >= m->goal || m->left_out >= AQR_MOST_LEFT_OUT;
 }
 
-static inline bool aqr_ends_on_border(uint8_t end)
-{
-  return end == AQR_END_BOUNDARY || end == AQR_END_FEATURE;
-}
-
 /* The points expected of a line. */
 double aqr_points_on(const aqr_sampler* m, aqr_index line);
 

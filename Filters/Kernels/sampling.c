@@ -72,9 +72,9 @@ static aqr_status collect_places(aqr_sampler* m, aqr_index id)
   m->n_places = 0;
   for (aqr_index k = m->parents[id].newest; k != AQR_NONE; k = m->marks[k].next)
     AQR_TRY(add_place(m, m->marks[k].sigma));
-  if (!line.closed && (line.is_chain || aqr_ends_on_border(line.ends[0])))
+  if (!line.closed && (line.is_chain || aqr_ends_on_chain(&line, 0)))
     AQR_TRY(add_place(m, 0));
-  if (!line.closed && (line.is_chain || aqr_ends_on_border(line.ends[1])))
+  if (!line.closed && (line.is_chain || aqr_ends_on_chain(&line, 1)))
     AQR_TRY(add_place(m, end));
   if (m->n_places)
     qsort(m->places, m->n_places, sizeof *m->places, by_value);
