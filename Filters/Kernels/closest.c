@@ -12,12 +12,10 @@ static double share(double part, double whole)
   return whole > 0 ? part / whole : 0;
 }
 
-/* Takes the point of a face closest to p where it is nearer than the best so far, by the regions of its plane (Ericson,
+/* The barycentric coordinates of the point of triangle abc closest to p, by the regions of its plane (Ericson,
  * Real-Time Collision Detection, 5.1.5). */
-static void keep_nearer(const aqr_surface* s, aqr_index f, vec3 p, aqr_closest* best)
+static inline vec3 shares_of_nearest(vec3 a, vec3 b, vec3 c, vec3 p)
 {
-  vec3 a = aqr_point(s, s->corner[3 * f]), b = aqr_point(s, s->corner[3 * f + 1]),
-       c = aqr_point(s, s->corner[3 * f + 2]);
   vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), ap = v3_sub(p, a), bp = v3_sub(p, b), cp = v3_sub(p, c);
   double d1 = v3_dot(ab, ap), d2 = v3_dot(ac, ap), d3 = v3_dot(ab, bp), d4 = v3_dot(ac, bp);
   double d5 = v3_dot(ab, cp), d6 = v3_dot(ac, cp), v, w;
@@ -62,12 +60,28 @@ static void keep_nearer(const aqr_surface* s, aqr_index f, vec3 p, aqr_closest* 
     w = share(vc, sum);
   }
   double u = v == 0 ? 1 - w : w == 0 ? 1 - v : greater(0, 1 - v - w);
-  if (v + w >= 1)
-    u = 0;
-  vec3 at = v3_madd(v3_madd(a, v, ab), w, ac);
-  double distance2 = v3_norm2(v3_sub(p, at));
+  return v3(v + w >= 1 ? 0 : u, v, w);
+}
+
+static inline vec3 combine(vec3 a, vec3 b, vec3 c, vec3 shares)
+{
+  return v3_madd(v3_madd(a, shares.y, v3_sub(b, a)), shares.z, v3_sub(c, a));
+}
+
+double aqr_triangle_distance2(vec3 a, vec3 b, vec3 c, vec3 p)
+{
+  return v3_norm2(v3_sub(p, combine(a, b, c, shares_of_nearest(a, b, c, p))));
+}
+
+/* Takes the point of a face closest to p where it is nearer than the best so far. */
+static void keep_nearer(const aqr_surface* s, aqr_index f, vec3 p, aqr_closest* best)
+{
+  vec3 a = aqr_point(s, s->corner[3 * f]), b = aqr_point(s, s->corner[3 * f + 1]),
+       c = aqr_point(s, s->corner[3 * f + 2]);
+  vec3 shares = shares_of_nearest(a, b, c, p), nearest = combine(a, b, c, shares);
+  double distance2 = v3_norm2(v3_sub(p, nearest));
   if (distance2 < best->distance2)
-    *best = (aqr_closest){ { f, { u, v, w } }, at, distance2 };
+    *best = (aqr_closest){ { f, { shares.x, shares.y, shares.z } }, nearest, distance2 };
 }
 
 static aqr_index other_side(const aqr_surface* s, aqr_index h, bool over_seams)

@@ -79,7 +79,7 @@ done:
 }
 
 /* Lines to polygons, with regions that are not disks cut until none is left. */
-static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tolerance)
+static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tolerance, aqr_tips* tips)
 {
   aqr_context* c = &r->context;
   aqr_network net = { 0 };
@@ -103,6 +103,8 @@ static aqr_status run_network(aqr_remesher* r, const aqr_options* o, double tole
       break;
   }
   AQR_TRY(aqr_network_mesh(c, r->surface, &r->field, &r->sizing, &r->lines, &net, &r->polygons));
+  if (o->preserve_topology)
+    AQR_TRY(aqr_tips_find(c, r->surface, r->field.normal, &r->lines, &net, &r->polygons, tips));
   AQR_TRY(add_bare_components(r, is_bare));
 done:
   aqr_network_free(c, &net);
@@ -151,6 +153,7 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
 {
   aqr_context* c = &r->context;
   aqr_status status = AQR_OK;
+  aqr_tips tips = { 0 };
   aqr_polygon_mesh_free(c, &r->polygons);
   aqr_lines_free(c, &r->lines);
   r->report.topology_cuts = r->report.coarsened_components = 0;
@@ -165,18 +168,20 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
   if (status != AQR_OK)
     return status;
   began = aqr_begin_stage(r, AQR_STAGE_NETWORK);
-  status = run_network(r, o, tolerance);
+  status = run_network(r, o, tolerance, &tips);
   aqr_end_stage(r, AQR_STAGE_NETWORK, began);
   if (status != AQR_OK)
-    return status;
+    goto done;
   began = aqr_begin_stage(r, AQR_STAGE_FACES);
-  aqr_faces_options faces = { o->convex_partition != 0, o->largest_valence };
+  aqr_faces_options faces = { o->convex_partition != 0, o->largest_valence, &tips };
   status = aqr_faces_finish(c, &r->polygons, &faces);
   if (status == AQR_OK && o->pure_quads)
     status = aqr_subdivide(c, r->surface, &r->polygons);
   if (status == AQR_OK && r->surface->mirrored) /* which vertices are on the plane is asked for from here on */
     status = aqr_place_on_chains(c, r->surface, &r->polygons);
   aqr_end_stage(r, AQR_STAGE_FACES, began);
+done:
+  aqr_tips_free(c, &tips);
   return status;
 }
 

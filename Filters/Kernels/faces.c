@@ -386,6 +386,8 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   AQR_REQUIRE(join_loose(c, m), AQR_CANCELLED);
   AQR_REQUIRE(aqr_step(c, 0.9), AQR_CANCELLED);
   AQR_TRY(aqr_regularize(c, m));
+  if (options->tips)
+    AQR_TRY(aqr_tips_raise(c, options->tips, m));
   AQR_REQUIRE(aqr_step(c, 0.95), AQR_CANCELLED);
   AQR_TRY(aqr_pm_verify(c, m, true));
   AQR_REQUIRE(aqr_step(c, 0.98), AQR_CANCELLED);

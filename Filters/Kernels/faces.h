@@ -3,12 +3,13 @@
 #ifndef AQR_FACES_H
 #define AQR_FACES_H
 
-#include "polygon_mesh.h"
+#include "tips.h"
 
 typedef struct aqr_faces_options
 {
   bool convex_partition; /* split concave faces */
   int largest_valence;   /* split faces with more corners; at least 4 */
+  const aqr_tips* tips;  /* what lies far out of the faces, or NULL */
 } aqr_faces_options;
 
 /* Dangling edges go, near intersections merge, T-joints that face each other join, faces are made convex and split to

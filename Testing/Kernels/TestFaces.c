@@ -308,7 +308,7 @@ AQR_TEST(no_face_has_more_corners_than_asked_for)
   {
     aqr_context c = { 0 };
     aqr_polygon_mesh m = { 0 };
-    aqr_faces_options o = { true, largest };
+    aqr_faces_options o = { .convex_partition = true, .largest_valence = largest };
     CHECK(sheet_of_quads(&c, 12, 12, &m));
     for (aqr_index h = 0; h < m.n_half_edges; h += 2)
     {
