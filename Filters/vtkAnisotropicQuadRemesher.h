@@ -218,8 +218,9 @@ public:
   ///@{
   /**
    * Neighbouring lines are meant to be no farther apart than this fraction of the diagonal of the
-   * input's bounding box, however flat the surface. Range [0.0001, 1], default 0.05 (paper, section
-   * 3.2).
+   * input's bounding box, however flat the surface (paper, section 3.2). With few target points flat places
+   * leave more of them to curved ones: the bound does not hold below 2.2 times the spacing that would spread
+   * the points evenly. Range [0.0001, 1], default 0.05.
    */
   vtkSetClampMacro(LargestSpacing, double, 1e-4, 1.0);
   vtkGetMacro(LargestSpacing, double);

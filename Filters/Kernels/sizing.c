@@ -16,6 +16,8 @@ static const double strongest = 1e3; /* factor on the spacing that the user's de
 static const double least_tolerance = 1e-9, most_tolerance = 0.25;
 static const double sparse =
   0.6; /* over the points asked for: a larger tolerance is not taken before the largest spacing gives way */
+static const double widest = 1.5; /* of the spacing that spreads the points asked for evenly: no largest spacing below
+                                     is held to */
 static const double flat_bend = 0.1; /* where points are asked for, flat places share them as if so little curved */
 
 typedef struct job
@@ -102,14 +104,19 @@ static void make_more_even(void* data, size_t begin, size_t end)
   }
 }
 
+static double total_area(const aqr_sizing* sizing)
+{
+  double area = 0;
+  for (size_t v = 0; v < sizing->n_points; v++)
+    area += (double)sizing->area[v];
+  return area;
+}
+
 static double mean_curvature(const aqr_sizing* z)
 {
-  double sum = 0, area = 0;
+  double sum = 0, area = total_area(z);
   for (size_t v = 0; v < z->n_points; v++)
-  {
     sum += (double)z->area[v] * curvature_at(z, v);
-    area += (double)z->area[v];
-  }
   return area > 0 ? sum / area : 1;
 }
 
@@ -191,24 +198,30 @@ double aqr_sizing_predict(const aqr_sizing* sizing, double tolerance)
 /* The root of it: where a number of points is asked for, only what one place has against another counts. */
 static double average_density(const aqr_sizing* sizing)
 {
-  double points = 0, area = 0;
+  double points = 0, area = sizing->scale ? total_area(sizing) : 0;
   for (size_t v = 0; sizing->scale && v < sizing->n_points; v++)
-  {
     points += (double)sizing->area[v] / ((double)sizing->scale[v] * (double)sizing->scale[v]);
-    area += (double)sizing->area[v];
-  }
   return area > 0 ? sqrt(points / area) : 1;
 }
 
+/* What the largest spacing is stretched by where points are few: as far as they do not suffice for it, and at least so
+ * far that curved places may have more than their share of them. */
+static double stretch_for(const aqr_sizing* sizing, double points)
+{
+  double short_of = aqr_sizing_predict(sizing, fmin(most_tolerance, sparse / points)) / points;
+  double wide = widest * sqrt(total_area(sizing) / points) / (sizing->coarser * sizing->largest);
+  return fmax(fmax(1, sqrt(short_of)), wide);
+}
+
 /* The prediction falls as the tolerance grows: halving on a logarithmic scale, sped up by how nearly it is in inverse
- * proportion. Fewer points than the largest spacing takes are had by stretching that. */
+ * proportion. */
 aqr_status aqr_sizing_solve(aqr_context* c, const aqr_surface* s, double points, aqr_sizing* sizing, double* tolerance)
 {
   double low = log(least_tolerance), high = log(most_tolerance), guess = log(1e-4);
   sizing->least_bend = flat_bend;
   sizing->stretch = 1;
   sizing->unit = average_density(sizing);
-  sizing->stretch = sqrt(fmax(1, aqr_sizing_predict(sizing, fmin(most_tolerance, sparse / points)) / points));
+  sizing->stretch = stretch_for(sizing, points);
   for (int i = 0; i < solve_steps && high - low > 1e-4; i++)
   {
     if (!aqr_step(c, 0))

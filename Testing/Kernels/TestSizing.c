@@ -155,4 +155,23 @@ AQR_TEST(a_density_scale_of_four_halves_the_spacings)
   model_free(&scaled);
 }
 
+/* A sheet with a narrow ridge across it. */
+static vec3 place_on_ridge(double u, double v)
+{
+  return v3(u, v, 0.05 * exp(-(u - 0.5) * (u - 0.5) / 0.002));
+}
+
+/* A largest spacing that few points do not suffice for left next to none for the ridge. */
+AQR_TEST(curved_places_have_more_than_their_share_of_few_points)
+{
+  model narrow = model_sizing(shape_grid(90, 90, false, false, 0.2, 5, place_on_ridge), 0.02, 5, NULL, 0.02);
+  model wide = model_sizing(shape_grid(90, 90, false, false, 0.2, 5, place_on_ridge), 0.02, 5, NULL, 1);
+  double tolerance[2];
+  CHECK(aqr_sizing_solve(&narrow.c, &narrow.s, 100, &narrow.z, &tolerance[0]) == AQR_OK);
+  CHECK(aqr_sizing_solve(&wide.c, &wide.s, 100, &wide.z, &tolerance[1]) == AQR_OK);
+  CHECK_BELOW(tolerance[0] / tolerance[1], 3);
+  model_free(&narrow);
+  model_free(&wide);
+}
+
 AQR_TEST_MAIN
