@@ -132,8 +132,8 @@ extern "C"
                                     coarsely */
     double largest_spacing;      /**< [1e-4, 1], 0.05: no two neighbouring lines are meant to be farther
                                     apart (3.2); with a target, not held to below 2.2 times the spacing
-                                    that would spread the points evenly. Neither it nor another option brings them nearer than a
-                                    quarter of the root of the area that a point of the cleaned input has */
+                                    that would spread the points evenly. Neither it nor another option brings them nearer
+                                    than a quarter of the root of the area that a point of the cleaned input has */
     double anisotropy;           /**< [0, 1], 1: how far faces are stretched where curvatures differ; 0: squares,
                                     as fine as the larger curvature asks for */
     double adaptivity;           /**< [0, 1], 1: how far density follows curvature; 0: everywhere as for the mean */

@@ -5,10 +5,11 @@
 
 enum
 {
-  most_triangles = 64 /* out of one face */
+  most_triangles = 64, /* out of one face */
+  steps_between_polls = 4096
 };
 
-static const double least_height = 0.7; /* of a tip over its face, in mean distances of the corners from the middle */
+static const double least_height = 0.7; /* of a tip over its face, in mean distances of the corners from the centre */
 
 /* ---- bays ---- */
 
@@ -23,7 +24,7 @@ typedef struct search
   uint8_t* seen;       /* per face of the surface */
   aqr_index* bay_seen; /* per vertex of the mesh: one more than the bay it was last met around */
   aqr_index* stack;
-  size_t stack_capacity, depth;
+  size_t stack_capacity, depth, steps;
 } search;
 
 static aqr_status enter(search* b, aqr_index f)
@@ -100,6 +101,8 @@ static aqr_status explore(search* b, aqr_index start)
   {
     aqr_index f = b->stack[--b->depth];
     bool ends;
+    if (++b->steps % steps_between_polls == 0)
+      AQR_REQUIRE(aqr_step(b->c, 1), AQR_CANCELLED);
     AQR_TRY(look_at_chords(b, f, &ends));
     if (ends)
     {
@@ -128,8 +131,6 @@ aqr_status aqr_tips_find(aqr_context* c, const aqr_surface* s, const double* nor
   for (aqr_index i = 0; i < l->n_lines; i++)
   {
     const aqr_line* line = &l->lines[i];
-    if (i % 1024 == 0)
-      AQR_REQUIRE(aqr_step(c, 1), AQR_CANCELLED);
     for (size_t k = line->first; !line->is_chain && k + 1 < line->first + line->count; k++)
     {
       bool ends = net->edge_at[k] != AQR_NONE || net->edge_at[k + 1] != AQR_NONE;
@@ -195,37 +196,44 @@ static aqr_status elect(
   return AQR_OK;
 }
 
-typedef struct middle
+static vec3 centre_of(const aqr_polygon_mesh* m, aqr_index f)
 {
-  vec3 p;
-  double radius; /* mean distance of the corners */
-  double size;   /* mean of theirs */
-} middle;
-
-static middle middle_of(const aqr_polygon_mesh* m, aqr_index f)
-{
-  middle r = { { 0, 0, 0 }, 0, 0 };
-  double n = (double)aqr_pm_face_size(m, f);
+  vec3 sum = v3(0, 0, 0);
+  double n = 0;
   aqr_index h = m->faces[f];
   do
   {
-    r.p = v3_madd(r.p, 1 / n, aqr_pm_point(m, aqr_pm_from(m, h)));
-    r.size += m->vertices[aqr_pm_from(m, h)].size / n;
+    sum = v3_add(sum, aqr_pm_point(m, aqr_pm_from(m, h)));
+    n++;
     h = aqr_pm_next(m, h);
   } while (h != m->faces[f]);
-  do
-  {
-    r.radius += v3_norm(v3_sub(aqr_pm_point(m, aqr_pm_from(m, h)), r.p)) / n;
-    h = aqr_pm_next(m, h);
-  } while (h != m->faces[f]);
-  return r;
+  return v3_scale(sum, 1 / n);
 }
 
-/* Of p from the triangles between the sides of a face and its middle. */
+/* Mean distance of the corners from the centre, and mean of their sizes. */
+static double radius_of(const aqr_polygon_mesh* m, aqr_index f, double* size)
+{
+  const vec3 centre = centre_of(m, f);
+  double sum = 0, n = 0;
+  aqr_index h = m->faces[f];
+  *size = 0;
+  do
+  {
+    const aqr_vertex* v = &m->vertices[aqr_pm_from(m, h)];
+    sum += v3_norm(v3_sub(v->position, centre));
+    *size += v->size;
+    n++;
+    h = aqr_pm_next(m, h);
+  } while (h != m->faces[f]);
+  *size /= n;
+  return sum / n;
+}
+
+/* Of p from the triangles between the sides of a face and its centre. */
 static double distance2_from(const aqr_polygon_mesh* m, aqr_index f, vec3 p)
 {
   double least = INFINITY;
-  const vec3 centre = middle_of(m, f).p;
+  const vec3 centre = centre_of(m, f);
   aqr_index h = m->faces[f];
   do
   {
@@ -237,7 +245,7 @@ static double distance2_from(const aqr_polygon_mesh* m, aqr_index f, vec3 p)
 }
 
 /* Cuts a face into triangles that meet at a new vertex: one diagonal, the vertex into it, then the other spokes. */
-static aqr_status raise(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, const aqr_vertex* tip)
+static aqr_status raise_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, const aqr_vertex* tip)
 {
   aqr_status status = AQR_OK;
   aqr_index h = m->faces[f], k = aqr_pm_next(m, aqr_pm_next(m, h)), spoke;
@@ -316,12 +324,12 @@ static aqr_status raise_over(aqr_context* c, const aqr_tips* t, size_t bay, aqr_
   while (m->n_faces - first < most_triangles)
   {
     const outlier x = farthest_point(t, bay, m, v, f, first);
-    const middle mid = middle_of(m, x.face);
-    if (!(sqrt(x.distance2) > least_height * mid.radius))
+    double size, radius = radius_of(m, x.face, &size);
+    if (!(sqrt(x.distance2) > least_height * radius))
       break;
-    const aqr_vertex tip = vertex_at(t, x.point, mid.size);
+    const aqr_vertex tip = vertex_at(t, x.point, size);
     v->raised[f] = 1;
-    AQR_TRY(raise(c, m, x.face, &tip));
+    AQR_TRY(raise_face(c, m, x.face, &tip));
   }
 done:
   return status;
