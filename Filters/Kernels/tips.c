@@ -6,6 +6,7 @@
 enum
 {
   most_triangles = 64, /* out of one face */
+  enough_points = 2048,
   steps_between_polls = 4096
 };
 
@@ -281,12 +282,14 @@ static void look_at_face(const aqr_polygon_mesh* m, aqr_index f, vec3 p, outlier
   }
 }
 
-/* The point of a bay farthest from the faces around it; of the one elected comes all from face `first` on. */
+/* The point of a bay farthest from the faces around it; of the one elected comes all from face `first` on. Of very many
+ * points some are looked at: a tip is as large as its face. */
 static outlier farthest_point(
   const aqr_tips* t, size_t bay, const aqr_polygon_mesh* m, const votes* v, aqr_index elected, size_t first)
 {
   outlier best = { AQR_NONE, elected, 0 };
-  for (size_t i = t->bays[bay].points; i < t->bays[bay + 1].points; i++)
+  const size_t begin = t->bays[bay].points, end = t->bays[bay + 1].points, step = (end - begin) / enough_points + 1;
+  for (size_t i = begin; i < end; i += step)
   {
     const vec3 p = aqr_point(t->s, t->points[i]);
     outlier x = { t->points[i], elected, INFINITY };
