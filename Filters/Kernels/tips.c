@@ -168,13 +168,13 @@ typedef struct votes
 
 /* The face with the most corners among the vertices around a bay; AQR_NONE where none of these is left. */
 static aqr_status elect(
-  aqr_context* c, const aqr_polygon_mesh* m, const aqr_index* border, size_t n, votes* v, aqr_index* elected)
+  aqr_context* c, const aqr_tips* t, size_t bay, const aqr_polygon_mesh* m, votes* v, aqr_index* elected)
 {
   *elected = AQR_NONE;
   v->n_faces = 0;
-  for (size_t i = 0; i < n; i++)
+  for (size_t i = t->bays[bay].border; i < t->bays[bay + 1].border; i++)
   {
-    aqr_index out = m->vertices[border[i]].out, h = out;
+    aqr_index out = m->vertices[t->border[i]].out, h = out;
     while (h != AQR_NONE)
     {
       aqr_index f = aqr_pm_face(m, h);
@@ -319,9 +319,8 @@ static aqr_vertex vertex_at(const aqr_tips* t, aqr_index point, double size)
 static aqr_status raise_over(aqr_context* c, const aqr_tips* t, size_t bay, aqr_polygon_mesh* m, votes* v)
 {
   aqr_index f;
-  const aqr_bay* at = &t->bays[bay];
   const size_t first = m->n_faces;
-  aqr_status status = elect(c, m, t->border + at->border, at[1].border - at->border, v, &f);
+  aqr_status status = elect(c, t, bay, m, v, &f);
   if (status != AQR_OK || f == AQR_NONE || v->raised[f])
     return status;
   while (m->n_faces - first < most_triangles)
