@@ -36,17 +36,17 @@ AQR_TEST(few_points_are_met_beyond_the_largest_spacing)
   shape m = shape_torus(30, 2);
   const int64_t asked[] = { 100, 200, 300 };
   for (int i = 0; i < 3; i++)
-    CHECK_BELOW(fabs(points_over_asked(&m, asked[i]) - 1), 0.05);
+    CHECK_BELOW(fabs(points_over_asked(&m, asked[i]) - 1), 0.04);
   shape_free(&m);
 }
 
 /* The spacing first taken is too wide by a factor that depends on the shape and on the target: it has to shrink until
- * the lines are enough, and no further. A loop is some twenty points. */
+ * the lines are enough, and no further. */
 AQR_TEST(shrinking_stops_at_the_points_asked_for)
 {
   shape m = shape_torus(60, 2);
   for (int64_t asked = 250; asked < 3000; asked = asked * 3 / 2)
-    CHECK_BELOW(fabs(points_over_asked(&m, asked) - 1), 0.04);
+    CHECK_BELOW(fabs(points_over_asked(&m, asked) - 1), 0.03);
   shape_free(&m);
 }
 
