@@ -103,6 +103,56 @@ std::vector<vtkIdType> SourceCells(const InputSurface& triangles, const aqr_inde
 }
 
 //------------------------------------------------------------------------------
+// The cleaned surface with the arrays of the input.
+vtkSmartPointer<vtkPolyData> NewFieldSurface(
+  vtkPolyData* input, const InputSurface& source, const aqr_field_view& field)
+{
+  const size_t triangles = field.number_of_triangles;
+  std::vector<int64_t> offsets(triangles + 1);
+  for (size_t t = 0; t <= triangles; ++t)
+  {
+    offsets[t] = static_cast<int64_t>(3 * t);
+  }
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
+  surface->SetPoints(NewPoints(field.points, field.number_of_points, input->GetPoints()->GetDataType()));
+  surface->SetPolys(NewCells(offsets.data(), triangles, field.triangles));
+  InterpolatePointData(input->GetPointData(), field.origins, field.number_of_points, surface->GetPointData());
+  const auto cells = SourceCells(source, field.triangle_source, triangles);
+  CopyCellData(input->GetCellData(), cells, surface->GetCellData());
+  surface->GetCellData()->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", cells.data(), triangles));
+  return surface;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> NewDirections(vtkPolyData* surface, const aqr_field_view& field)
+{
+  const size_t points = field.number_of_points;
+  auto directions = vtkSmartPointer<vtkPolyData>::New();
+  directions->ShallowCopy(surface);
+  vtkPointData* data = directions->GetPointData();
+  data->SetNormals(NewArray<vtkFloatArray>("Normals", field.normals, points, 3));
+  data->AddArray(NewArray<vtkFloatArray>("MinDirection", field.min_direction, points, 3));
+  data->SetActiveVectors("MinDirection"); // what glyphs take by themselves; SetVectors() would drop the input's
+  data->AddArray(NewArray<vtkFloatArray>("MaxDirection", field.max_direction, points, 3));
+  data->AddArray(NewArray<vtkDoubleArray>("MinCurvature", field.min_curvature, points));
+  data->AddArray(NewArray<vtkDoubleArray>("MaxCurvature", field.max_curvature, points));
+  return directions;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> NewConfidence(vtkPolyData* surface, const aqr_field_view& field)
+{
+  auto confidence = vtkSmartPointer<vtkPolyData>::New();
+  confidence->ShallowCopy(surface);
+  confidence->GetPointData()->AddArray(
+    NewArray<vtkFloatArray>("Confidence", field.point_confidence, field.number_of_points));
+  confidence->GetPointData()->SetActiveScalars("Confidence"); // SetScalars() would drop the input's
+  confidence->GetCellData()->AddArray(
+    NewArray<vtkFloatArray>("Confidence", field.triangle_confidence, field.number_of_triangles));
+  return confidence;
+}
+
+//------------------------------------------------------------------------------
 std::string Quoted(const std::string& text)
 {
   std::string quoted = "\"";
@@ -118,6 +168,32 @@ std::string Quoted(const std::string& text)
 }
 
 //------------------------------------------------------------------------------
+// What the ports of the field are made of: where nothing of it changes they serve again.
+struct FieldSources
+{
+  vtkSmartPointer<vtkPointData> PointData; // kept, as all objects here, so that no other can take its address
+  vtkSmartPointer<vtkCellData> CellData;
+  vtkMTimeType Time = 0;
+  int Precision = 0;
+  uint64_t Revision = 0;
+
+  FieldSources() = default;
+  FieldSources(vtkPolyData* input, const aqr_field_view& field)
+    : PointData(input->GetPointData())
+    , CellData(input->GetCellData())
+    , Time(std::max(PointData->GetMTime(), CellData->GetMTime()))
+    , Precision(input->GetPoints()->GetDataType())
+    , Revision(field.revision)
+  {
+  }
+  bool operator==(const FieldSources& other) const
+  {
+    return this->PointData == other.PointData && this->CellData == other.CellData && this->Time == other.Time &&
+           this->Precision == other.Precision && this->Revision == other.Revision;
+  }
+};
+
+//------------------------------------------------------------------------------
 // One surface and the stages computed for it.
 struct Slot
 {
@@ -128,6 +204,9 @@ struct Slot
   std::vector<int64_t> Locked;
   SurfaceDigest Digest = {};
   unsigned long Turn = 0;
+  FieldSources FieldMadeOf;
+  vtkSmartPointer<vtkPolyData> Directions; // the last outputs of their ports, or none
+  vtkSmartPointer<vtkPolyData> Confidence;
 
   Slot() = default;
   Slot(const Slot&) = delete;
@@ -215,6 +294,7 @@ public:
 
   aqr_remesher* Remesher() const { return this->Slots.empty() ? nullptr : this->Slots.front().Remesher; }
   const InputSurface& Surface() const { return this->Slots.front().Surface; }
+  Slot& Current() { return this->Slots.front(); }
 
   std::string Counts() const
   {
@@ -506,39 +586,34 @@ void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* o
 //------------------------------------------------------------------------------
 void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* directions, vtkPolyData* confidence)
 {
-  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher());
-  const size_t points = field->number_of_points;
-  const size_t triangles = field->number_of_triangles;
-  std::vector<int64_t> offsets(triangles + 1);
-  for (size_t t = 0; t <= triangles; ++t)
+  Slot& slot = this->Internals->Current();
+  const aqr_field_view* field = aqr_remesher_field(slot.Remesher);
+  const FieldSources sources = field ? FieldSources(input, *field) : FieldSources();
+  const bool hold = field && sources == slot.FieldMadeOf;
+  if (!hold || !this->GenerateDirections)
   {
-    offsets[t] = static_cast<int64_t>(3 * t);
+    slot.Directions = nullptr;
   }
-  vtkNew<vtkPolyData> surface;
-  surface->SetPoints(NewPoints(field->points, points, input->GetPoints()->GetDataType()));
-  surface->SetPolys(NewCells(offsets.data(), triangles, field->triangles));
-  InterpolatePointData(input->GetPointData(), field->origins, points, surface->GetPointData());
-  const auto sources = SourceCells(this->Internals->Surface(), field->triangle_source, triangles);
-  CopyCellData(input->GetCellData(), sources, surface->GetCellData());
-  surface->GetCellData()->AddArray(NewArray<vtkIdTypeArray>("SourceCellId", sources.data(), triangles));
-
-  if (this->GenerateDirections)
+  if (!hold || !this->GenerateConfidence)
   {
-    directions->ShallowCopy(surface);
-    vtkPointData* data = directions->GetPointData();
-    data->SetNormals(NewArray<vtkFloatArray>("Normals", field->normals, points, 3));
-    data->AddArray(NewArray<vtkFloatArray>("MinDirection", field->min_direction, points, 3));
-    data->SetActiveVectors("MinDirection"); // what glyphs take by themselves; SetVectors() would drop the input's
-    data->AddArray(NewArray<vtkFloatArray>("MaxDirection", field->max_direction, points, 3));
-    data->AddArray(NewArray<vtkDoubleArray>("MinCurvature", field->min_curvature, points));
-    data->AddArray(NewArray<vtkDoubleArray>("MaxCurvature", field->max_curvature, points));
+    slot.Confidence = nullptr;
   }
-  if (this->GenerateConfidence)
+  slot.FieldMadeOf = sources;
+  const bool makeDirections = this->GenerateDirections && !slot.Directions;
+  const bool makeConfidence = this->GenerateConfidence && !slot.Confidence;
+  if (makeDirections || makeConfidence)
   {
-    confidence->ShallowCopy(surface);
-    confidence->GetPointData()->AddArray(NewArray<vtkFloatArray>("Confidence", field->point_confidence, points));
-    confidence->GetPointData()->SetActiveScalars("Confidence"); // SetScalars() would drop the input's
-    confidence->GetCellData()->AddArray(NewArray<vtkFloatArray>("Confidence", field->triangle_confidence, triangles));
+    const auto surface = NewFieldSurface(input, slot.Surface, *field);
+    slot.Directions = makeDirections ? NewDirections(surface, *field) : slot.Directions;
+    slot.Confidence = makeConfidence ? NewConfidence(surface, *field) : slot.Confidence;
+  }
+  if (slot.Directions)
+  {
+    directions->ShallowCopy(slot.Directions);
+  }
+  if (slot.Confidence)
+  {
+    confidence->ShallowCopy(slot.Confidence);
   }
 }
 
@@ -641,10 +716,7 @@ int vtkAnisotropicQuadRemesher::RequestData(
   }
 
   this->FillRemeshed(input, outputs[REMESHED]);
-  if (this->GenerateDirections || this->GenerateConfidence)
-  {
-    this->FillField(input, outputs[PRINCIPAL_DIRECTIONS], outputs[CONFIDENCE]);
-  }
+  this->FillField(input, outputs[PRINCIPAL_DIRECTIONS], outputs[CONFIDENCE]);
   if (this->GenerateLines)
   {
     this->FillLines(input, outputs[INTEGRATED_LINES]);

@@ -218,6 +218,7 @@ extern "C"
     const aqr_index* triangles;       /**< 3 per triangle */
     const aqr_index* triangle_source; /**< per triangle: the input triangle it came from */
     const float* triangle_confidence; /**< per triangle, [0,1] (paper, equation 1) */
+    uint64_t revision;                /**< another number when the field was computed anew, the same when reused */
   } aqr_field_view;
 
   /** Port 3: polylines on the cleaned surface. A closed line repeats its first point at its end. */

@@ -42,6 +42,7 @@ struct aqr_remesher
   aqr_chains chains;
   aqr_tensors tensors;
   aqr_field field;
+  uint64_t field_revision; /* how often it was computed */
   aqr_sizing sizing;
   aqr_lines lines;
   aqr_polygon_mesh polygons;

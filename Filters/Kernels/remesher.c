@@ -257,6 +257,7 @@ static aqr_status run_curvature(aqr_remesher* r, const aqr_options* o)
 
 static aqr_status run_field(aqr_remesher* r, const aqr_options* o)
 {
+  r->field_revision++;
   return aqr_direction_field(
     &r->context, r->surface, &r->tensors, o->smoothing_iterations, aqr_cosine(o->confidence_angle), &r->field);
 }

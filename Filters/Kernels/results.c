@@ -252,7 +252,7 @@ aqr_status aqr_results_field(aqr_remesher* r)
   float *point_confidence = AQR_NEW(c, float, n), *confidence = AQR_NEW(c, float, nf);
   aqr_index *triangles = AQR_NEW(c, aqr_index, 3 * nf), *source = AQR_NEW(c, aqr_index, nf);
   r->field_view = (aqr_field_view){ n, points, origins, normals, min_direction, max_direction, min_curvature,
-    max_curvature, point_confidence, nf, triangles, source, confidence };
+    max_curvature, point_confidence, nf, triangles, source, confidence, r->field_revision };
   AQR_REQUIRE(points && normals && min_direction && max_direction && min_curvature && max_curvature && origins &&
                 point_confidence && confidence && triangles && source,
     AQR_OUT_OF_MEMORY);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fails when a change of density computes the curvature again, or when a change of the input does not.
+// Fails when a change of density computes the curvature again or copies its ports anew, or when a change of the input
+// does not.
 #include "RemesherTesting.h"
+#include "vtkIntArray.h"
 
 #include <chrono>
 
@@ -42,12 +44,29 @@ int TestCaching(int, char*[])
   CHECK(!Reused(filter, "curvature"));
   const std::string first = Shape(filter->GetOutput());
   CHECK(!first.empty());
+  vtkSmartPointer<vtkDataArray> direction = filter->GetOutput(1)->GetPointData()->GetArray("MinDirection");
+  vtkSmartPointer<vtkDataArray> confidence = filter->GetOutput(2)->GetPointData()->GetArray("Confidence");
+  CHECK(direction && confidence);
 
   filter->SetTolerance(0.002);
   filter->Update();
   CHECK(Reused(filter, "curvature"));
   const std::string finer = Shape(filter->GetOutput());
   CHECK(finer.size() > first.size());
+  CHECK(filter->GetOutput(1)->GetPointData()->GetArray("MinDirection") == direction);
+  CHECK(filter->GetOutput(2)->GetPointData()->GetArray("Confidence") == confidence);
+
+  // A port that was off is there again, the other one leaves.
+  filter->GenerateDirectionsOff();
+  filter->SetTolerance(0.0021);
+  filter->Update();
+  CHECK(filter->GetOutput(1)->GetNumberOfPoints() == 0);
+  CHECK(filter->GetOutput(2)->GetPointData()->GetArray("Confidence") == confidence);
+  filter->GenerateDirectionsOn();
+  filter->SetTolerance(0.002);
+  filter->Update();
+  CHECK(filter->GetOutput(1)->GetNumberOfPoints() == filter->GetOutput(2)->GetNumberOfPoints());
+  direction = filter->GetOutput(1)->GetPointData()->GetArray("MinDirection");
 
   // A cached run gives what a fresh filter gives.
   vtkNew<vtkAnisotropicQuadRemesher> fresh;
@@ -59,6 +78,8 @@ int TestCaching(int, char*[])
   filter->SetCurvatureRadius(0.03);
   filter->Update();
   CHECK(!Reused(filter, "curvature"));
+  CHECK(filter->GetOutput(1)->GetPointData()->GetArray("MinDirection") != direction);
+  CHECK(filter->GetOutput(2)->GetPointData()->GetArray("Confidence") != confidence);
 
   // New attributes do not change the geometry; a moved point does.
   vtkNew<vtkDoubleArray> array;
@@ -70,7 +91,24 @@ int TestCaching(int, char*[])
   filter->SetTolerance(0.003);
   filter->Update();
   CHECK(Reused(filter, "curvature"));
-  CHECK(filter->GetOutput()->GetPointData()->GetArray("new") != nullptr);
+  for (int port = 0; port < 3; ++port)
+  {
+    CHECK(filter->GetOutput(port)->GetPointData()->GetArray("new") != nullptr);
+  }
+  array->FillValue(2.0);
+  array->Modified();
+  filter->Update();
+  for (int port = 0; port < 3; ++port)
+  {
+    CHECK(filter->GetOutput(port)->GetPointData()->GetArray("new")->GetComponent(0, 0) == 2.0);
+  }
+  vtkNew<vtkIntArray> cells;
+  cells->SetName("cells");
+  cells->SetNumberOfTuples(torus->GetNumberOfCells());
+  cells->FillValue(7);
+  torus->GetCellData()->AddArray(cells);
+  filter->Update();
+  CHECK(filter->GetOutput(1)->GetCellData()->GetArray("cells") != nullptr);
 
   double x[3];
   torus->GetPoint(0, x);

@@ -428,6 +428,28 @@ AQR_TEST(a_change_of_density_alone_reuses_the_field_and_gives_what_a_fresh_run_g
   shape_free(&m);
 }
 
+AQR_TEST(a_field_computed_anew_has_another_revision_and_a_reused_one_keeps_it)
+{
+  shape m = shape_torus(24, 9);
+  aqr_options o = aqr_default_options();
+  aqr_remesher* r = remesh(&m, &o);
+  uint64_t revision = aqr_remesher_field(r)->revision;
+  o.tolerance *= 2;
+  CHECK(again(r, o) == AQR_OK && aqr_remesher_field(r)->revision == revision);
+  o.show_field = 0;
+  CHECK(again(r, o) == AQR_OK);
+  o.show_field = 1;
+  CHECK(again(r, o) == AQR_OK && aqr_remesher_field(r)->revision == revision);
+  o.smoothing_iterations++;
+  CHECK(again(r, o) == AQR_OK && aqr_remesher_field(r)->revision != revision);
+  revision = aqr_remesher_field(r)->revision;
+  const aqr_input input = shape_input(&m);
+  CHECK(aqr_remesher_set_input(r, &input) == AQR_OK && again(r, o) == AQR_OK);
+  CHECK(aqr_remesher_field(r)->revision != revision);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
 static size_t bytes_at_end(const aqr_remesher* r)
 {
   size_t n;
