@@ -588,8 +588,14 @@ void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* dire
 {
   Slot& slot = this->Internals->Current();
   const aqr_field_view* field = aqr_remesher_field(slot.Remesher);
-  const FieldSources sources = field ? FieldSources(input, *field) : FieldSources();
-  const bool hold = field && sources == slot.FieldMadeOf;
+  if (!field) // neither is asked for
+  {
+    slot.Directions = nullptr;
+    slot.Confidence = nullptr;
+    return;
+  }
+  const FieldSources sources(input, *field);
+  const bool hold = sources == slot.FieldMadeOf;
   if (!hold || !this->GenerateDirections)
   {
     slot.Directions = nullptr;
