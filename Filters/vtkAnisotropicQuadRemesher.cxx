@@ -307,11 +307,12 @@ public:
          << ", \"flipped_triangles\": " << report->flipped_triangles
          << ", \"unorientable_edges\": " << report->unorientable_edges
          << ", \"refined_points\": " << report->refined_points << ", \"feature_edges\": " << report->feature_edges
-         << ", \"locked_edges\": " << report->locked_edges << ", \"locked_missed\": " << report->locked_missed
-         << ", \"boundary_loops\": " << report->boundary_loops << ", \"components\": " << report->components
-         << ", \"lines\": " << report->lines << ", \"line_samples\": " << report->line_samples
-         << ", \"proximity_queries\": " << report->proximity_queries << ", \"faces_crossed\": " << report->faces_crossed
-         << ", \"bounded_points\": " << report->bounded_points << ", \"topology_cuts\": " << report->topology_cuts
+         << ", \"given_up_edges\": " << report->given_up_edges << ", \"locked_edges\": " << report->locked_edges
+         << ", \"locked_missed\": " << report->locked_missed << ", \"boundary_loops\": " << report->boundary_loops
+         << ", \"components\": " << report->components << ", \"lines\": " << report->lines
+         << ", \"line_samples\": " << report->line_samples << ", \"proximity_queries\": " << report->proximity_queries
+         << ", \"faces_crossed\": " << report->faces_crossed << ", \"bounded_points\": " << report->bounded_points
+         << ", \"topology_cuts\": " << report->topology_cuts
          << ", \"coarsened_components\": " << report->coarsened_components
          << ", \"topology_lost\": " << report->topology_lost << ", \"asymmetric_points\": " << report->asymmetric_points
          << ", \"target_missed\": " << report->target_missed << ", \"tolerance\": " << report->tolerance
@@ -383,6 +384,11 @@ public:
       this->Warnings.push_back(std::to_string(report->locked_missed) + " of " +
                                std::to_string(this->Locked.size() / 2) +
                                " locked edges are no edges of the input's polygons and were passed over.");
+    }
+    if (report->given_up_edges)
+    {
+      this->Warnings.push_back("So few points cannot follow all creases: " + std::to_string(report->given_up_edges) +
+                               " edges of those that bend the surface least are no feature lines.");
     }
     if (report->coarsened_components)
     {

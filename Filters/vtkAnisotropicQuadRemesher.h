@@ -168,7 +168,8 @@ public:
   ///@{
   /**
    * Whether creases of the input become lines, so that they stay edges of the output. Default: on
-   * (paper, section 3).
+   * (paper, section 3). With a target number of points only as many as can be had for a quarter of it:
+   * those that bend the surface least are given up, with a warning. Locked edges never are.
    */
   vtkSetMacro(FeatureLines, bool);
   vtkGetMacro(FeatureLines, bool);

@@ -126,7 +126,8 @@ extern "C"
                                     (paper 4.1) */
     double confidence_angle;     /**< [0, 90], 30: directions inside a face that differ by more are not
                                     trusted (4.1) */
-    int feature_lines;           /**< 0 or 1, 1: creases become lines (paper 3) */
+    int feature_lines;           /**< 0 or 1, 1: creases become lines (paper 3), but with target_points only as many
+                                    as can be had for a quarter of the points */
     double feature_angle;        /**< (0, 180], 40: dihedral deviation from flat that makes an edge a crease */
     int boundary_lines;          /**< 0 or 1, 1: boundary loops become lines; 0 lets the border be cut
                                     coarsely */
@@ -248,7 +249,9 @@ extern "C"
     size_t flipped_triangles;    /**< turned to agree with their neighbours */
     size_t unorientable_edges;   /**< cut because no orientation agrees across them */
     size_t refined_points;       /**< added to halve edges longer than what lines need (paper 3.2) */
-    size_t feature_edges;        /**< input edges on feature lines */
+    size_t feature_edges;        /**< edges that are creases, once long ones are halved */
+    size_t given_up_edges;       /**< creases that no line follows, since target_points cannot pay for all: those that
+                                    bend the surface least; with symmetry, of the half that is kept */
     size_t locked_edges;         /**< edges of the cleaned input that `locked` of the input asks for */
     size_t locked_missed;        /**< pairs of `locked` that are no edge of the cleaned input, passed over */
     size_t boundary_loops;       /**< of the cleaned input */
@@ -265,7 +268,7 @@ extern "C"
     size_t asymmetric_points;    /**< of the cleaned input, with no other point at their mirror image; with symmetry */
     size_t target_missed;        /**< 1 when target_points could not be met within 5 % */
     double tolerance;            /**< used, as a fraction of the diagonal */
-    double feature_rms;          /**< distance of creases and locked edges from the output's edges: root mean square */
+    double feature_rms;          /**< distance of creases that are kept from the output's edges: root mean square */
     double feature_max;          /**< ... and largest, as fractions of the diagonal; 0 where there are none */
     double boundary_rms;         /**< the same of the boundary */
     double boundary_max;         /**< the same of the boundary */

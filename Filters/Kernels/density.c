@@ -272,9 +272,7 @@ static aqr_status meet_target(aqr_remesher* r, const aqr_options* o)
 {
   aqr_context* c = &r->context;
   aqr_status status = AQR_OK;
-  /* points of the output over points that lines give */
-  const double per = (o->pure_quads ? AQR_QUADS_PER_FACE : 1) * (o->symmetry ? 2 : 1),
-               goal = (double)o->target_points / per;
+  const double per = aqr_points_per_crossing(o), goal = aqr_line_points(o);
   double ask = goal / largest_excess, points = goal, before[3] = { 0, 0, 0 };
   double last_made = INFINITY;
   trial trials[most_attempts];

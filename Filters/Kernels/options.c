@@ -10,6 +10,9 @@ enum
   cookie = 0x41515233
 };
 
+static const double crease_share = 0.25, /* of the points: with more the surface between starves */
+  fewest_on_creases = 12;                /* what is left is no surface worth the loss of a block's corners */
+
 aqr_options aqr_default_options(void)
 {
   return (aqr_options){ .cookie = cookie,
@@ -99,6 +102,19 @@ uint64_t aqr_fingerprint(const double* a, size_t n)
   return a ? h : 0;
 }
 
+double aqr_crease_budget(const aqr_options* o, const aqr_chain_cost* cost)
+{
+  double all = aqr_line_points(o), points = fmax(all / 4, all - cost->boundary);
+  return o->density == AQR_DENSITY_POINTS ? fmax(fewest_on_creases, crease_share * points) : INFINITY;
+}
+
+/* Whether creases would be given up, or come back, or others would be. */
+static bool other_creases(const aqr_chain_cost* cost, const aqr_options* a, const aqr_options* b)
+{
+  double x = aqr_crease_budget(a, cost), y = aqr_crease_budget(b, cost);
+  return aqr_differ(x, y) && cost->creases > fmin(x, y);
+}
+
 int aqr_first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t density)
 {
   const aqr_options* d = &r->done;
@@ -107,7 +123,7 @@ int aqr_first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t dens
     moved |= aqr_differ(o->symmetry_origin[k], d->symmetry_origin[k]) ||
              aqr_differ(o->symmetry_normal[k], d->symmetry_normal[k]);
   if (o->feature_lines != d->feature_lines || aqr_differ(o->feature_angle, d->feature_angle) ||
-      !o->symmetry != !d->symmetry || (o->symmetry && moved))
+      !o->symmetry != !d->symmetry || (o->symmetry && moved) || other_creases(&r->chain_cost, o, d))
     return AQR_STAGE_FEATURES;
   if (aqr_differ(o->curvature_radius, d->curvature_radius))
     return AQR_STAGE_CURVATURE;

@@ -3,11 +3,13 @@
 #ifndef AQR_PIPELINE_H
 #define AQR_PIPELINE_H
 
+#include "crease_budget.h"
 #include "feature_graph.h"
 #include "field.h"
 #include "lines.h"
 #include "polygon_mesh.h"
 #include "sizing.h"
+#include "subdivide.h"
 #include "symmetry.h"
 
 enum aqr_stage_id
@@ -40,6 +42,7 @@ struct aqr_remesher
   aqr_surface cut;      /* cut open along creases, when there are any */
   aqr_surface* surface; /* the one in use */
   aqr_chains chains;
+  aqr_chain_cost chain_cost; /* with all creases that were found */
   aqr_tensors tensors;
   aqr_field field;
   uint64_t field_revision; /* how often it was computed */
@@ -74,6 +77,18 @@ static inline aqr_surface* aqr_solid(aqr_remesher* r)
   return r->half.n_faces ? &r->half : &r->base;
 }
 
+/* Points of the output over points that lines give. */
+static inline double aqr_points_per_crossing(const aqr_options* o)
+{
+  return (o->pure_quads ? AQR_QUADS_PER_FACE : 1) * (o->symmetry ? 2 : 1);
+}
+
+/* Points that lines are to give, where a number is asked for. */
+static inline double aqr_line_points(const aqr_options* o)
+{
+  return (double)o->target_points / aqr_points_per_crossing(o);
+}
+
 static inline double aqr_cosine(double degrees)
 {
   return cos(degrees * 0.017453292519943295);
@@ -90,6 +105,8 @@ void aqr_end_stage(aqr_remesher* r, int stage, double began);
 
 /* AQR_BAD_OPTION, and a message, where an option is outside its range (options.c). */
 aqr_status aqr_check_options(aqr_remesher* r, const aqr_options* o);
+/* Points that creases may take (options.c): infinitely many where no number of points is asked for. */
+double aqr_crease_budget(const aqr_options* o, const aqr_chain_cost* cost);
 /* Of n factors on the density, which may be NULL. */
 uint64_t aqr_fingerprint(const double* a, size_t n);
 /* The first stage that reads an option which changed since the last run. */

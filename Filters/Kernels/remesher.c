@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pipeline: surface -> features -> curvature -> direction field -> sizing -> lines -> network -> faces -> fit. */
 #include "chain_places.h"
+#include "crease_budget.h"
 #include "feature_error.h"
 #include "fit.h"
 #include "pipeline.h"
@@ -14,6 +15,10 @@ static const double farthest_plane = 1e6; /* of symmetry, in diagonals: beyond, 
 static const double longest_edge = 0.025; /* edges longer than this are halved (paper 3.2): half the default spacing */
 static const double corner_angle = 45;    /* a chain turning more sharply has a corner there */
 static const double shortest_feature = 0.02;
+enum
+{
+  most_economies = 12
+};
 static const double sharpest = 2; /* over the averaging radius: bends sharper than that it cannot tell from noise */
 static const double least_radius = 0.001;
 
@@ -197,6 +202,47 @@ static aqr_status cut_half(aqr_remesher* r, const aqr_options* o, uint8_t** crea
   return AQR_OK;
 }
 
+/* Cuts what is to be remeshed open along its creases, and collects them. */
+static aqr_status cut_open(aqr_remesher* r, const uint8_t* crease, size_t n)
+{
+  aqr_context* c = &r->context;
+  aqr_status status = AQR_OK;
+  bool any = false;
+  for (size_t h = 0; h < n && !any; h++)
+    any = crease[h];
+  aqr_chains_free(c, &r->chains);
+  aqr_surface_free(c, &r->cut);
+  r->surface = aqr_solid(r);
+  if (any)
+  {
+    AQR_TRY(aqr_surface_copy(c, aqr_solid(r), &r->cut));
+    r->surface = &r->cut;
+    AQR_TRY(aqr_surface_cut(c, &r->cut, crease));
+  }
+  AQR_TRY(aqr_chains_build(c, r->surface, corner_angle, &r->chains));
+done:
+  return status;
+}
+
+/* Gives up creases until the target can pay for those that are left. */
+static aqr_status afford_creases(aqr_remesher* r, const aqr_options* o, uint8_t* crease, size_t n)
+{
+  aqr_context* c = &r->context;
+  aqr_status status = aqr_chains_measure(c, r->surface, &r->chains, &r->chain_cost);
+  const double budget = aqr_crease_budget(o, &r->chain_cost);
+  aqr_chain_cost left = r->chain_cost;
+  size_t given_up = 1;
+  for (int i = 0; status == AQR_OK && i < most_economies && left.creases > budget && given_up; i++)
+  {
+    AQR_TRY(aqr_creases_give_up(c, r->surface, &r->chains, budget, crease, &given_up));
+    AQR_TRY(cut_open(r, crease, n));
+    AQR_TRY(aqr_chains_measure(c, r->surface, &r->chains, &left));
+    r->report.given_up_edges += given_up;
+  }
+done:
+  return status;
+}
+
 static aqr_status run_features(aqr_remesher* r, const aqr_options* o)
 {
   aqr_context* c = &r->context;
@@ -209,18 +255,14 @@ static aqr_status run_features(aqr_remesher* r, const aqr_options* o)
   r->surface_report.feature_edges = r->report.feature_edges;
   r->surface_report.asymmetric_points = 0;
   for (size_t h = 0; r->base.locked && h < n; h++)
-    crease[h] |= r->base.locked[h] && !aqr_is_boundary(&r->base, (aqr_index)h);
+    if (r->base.locked[h] && !aqr_is_boundary(&r->base, (aqr_index)h))
+      crease[h] = AQR_CREASE_LOCKED;
   if (o->symmetry)
     AQR_TRY(cut_half(r, o, &crease, &n));
-  bool any = memchr(crease, 1, n) != NULL;
-  if (any)
-  {
-    AQR_TRY(aqr_surface_copy(c, aqr_solid(r), &r->cut));
-    r->surface = &r->cut;
-    AQR_TRY(aqr_surface_cut(c, &r->cut, crease));
-  }
-  r->surface = any ? &r->cut : aqr_solid(r);
-  AQR_TRY(aqr_chains_build(c, r->surface, corner_angle, &r->chains));
+  AQR_TRY(cut_open(r, crease, n));
+  r->report.given_up_edges = 0;
+  AQR_TRY(afford_creases(r, o, crease, n));
+  r->surface_report.given_up_edges = r->report.given_up_edges;
 done:
   AQR_DROP(c, crease, n);
   return status;

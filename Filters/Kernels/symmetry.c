@@ -242,7 +242,7 @@ aqr_status aqr_symmetry_cut(aqr_context* c, const aqr_surface* s, const aqr_plan
       half->mirrored[half->corner[h]] = half->mirrored[half->corner[aqr_next(h)]] = 1;
   half->mirrored_loops = count_loops(&w);
   for (size_t h = 0; h < kept_edges; h++)
-    (*crease)[h] = w.crease[h] && half->twin[h] != AQR_NONE;
+    (*crease)[h] = half->twin[h] != AQR_NONE ? w.crease[h] : 0;
 done:
   AQR_DROP(c, w.height, n_points);
   AQR_DROP(c, w.side, n_points);

@@ -7,6 +7,7 @@
 #include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 
+#include <cmath>
 #include <limits>
 
 namespace
@@ -27,6 +28,18 @@ vtkSmartPointer<vtkPolyData> WithPoint(vtkPolyData* surface, double x, double y,
   copy->DeepCopy(surface);
   copy->GetPoints()->SetPoint(17, x, y, z);
   return copy;
+}
+
+// Square, of as many strips that lie at right angles to each other.
+vtkSmartPointer<vtkPolyData> MakeFoldedSheet(int strips)
+{
+  return MakeGrid(strips, strips, false, false,
+    [strips](double u, double v, double* p)
+    {
+      p[0] = u * strips;
+      p[1] = v * strips;
+      p[2] = static_cast<double>(std::lround(p[0]) % 2);
+    });
 }
 }
 
@@ -135,5 +148,19 @@ int TestErrors(int, char*[])
   std::cout << messages.Text << "\n";
   CHECK(messages.Errors == 0 && messages.Warnings == 1 && messages.Says("target"));
   CHECK(filter->GetOutput(0)->GetNumberOfPolys() >= 6);
+  messages.Clear();
+
+  // So are creases that are more than it can pay for.
+  filter->SetInputData(MakeFoldedSheet(40));
+  filter->SetTargetNumberOfPoints(100);
+  filter->Update();
+  std::cout << messages.Text << "\n";
+  CHECK(messages.Errors == 0 && messages.Warnings == 1 && messages.Says("few points cannot follow all creases"));
+  CHECK(filter->GetReport().find("\"given_up_edges\": 0,") == std::string::npos);
+  messages.Clear();
+  filter->SetTargetNumberOfPoints(5000);
+  filter->Update();
+  CHECK(messages.Errors == 0 && messages.Warnings == 0);
+  CHECK(filter->GetReport().find("\"given_up_edges\": 0,") != std::string::npos);
   return checks.ExitCode();
 }

@@ -3,7 +3,7 @@
 #include "test.h"
 
 #include "judge.h"
-#include "shapes.h"
+#include "remesh.h"
 
 typedef struct trial
 {
@@ -57,16 +57,25 @@ static shape small_scene(void)
   return m;
 }
 
-static aqr_options small_options(int by_points)
+enum
+{
+  unaffordable = 60, /* points for the creases of the scene: some are given up */
+  third_time = 80    /* points that are met at the third attempt: enough to see the others dropped */
+};
+
+static aqr_options small_options(int64_t points, int symmetry)
 {
   aqr_options o = aqr_default_options();
-  o.density = by_points ? AQR_DENSITY_POINTS : AQR_DENSITY_TOLERANCE;
-  o.target_points = 60; /* met at the third attempt: enough to see the others dropped */
+  if (points)
+  {
+    o.density = AQR_DENSITY_POINTS;
+    o.target_points = points;
+  }
   o.tolerance = 0.02;
   o.largest_spacing = 0.3;
   o.smoothing_iterations = 1;
   o.feature_angle = 25;
-  o.symmetry = by_points > 1;
+  o.symmetry = symmetry;
   return o;
 }
 
@@ -104,31 +113,31 @@ static size_t after(size_t n)
   return n < 400 ? n + 1 : n + 1 + (n - 400) / 1000 + n % 5;
 }
 
-static void fail_everywhere(int by_points, size_t* visited)
+static void fail_everywhere(const aqr_options* o)
 {
   shape m = small_scene();
   aqr_input input = shape_input(&m);
-  aqr_options o = small_options(by_points);
+  size_t visited = 0;
   for (size_t n = 1;; n = after(n))
   {
     trial t = { .fail_at = n };
     aqr_remesher* r = NULL;
     aqr_status status = aqr_remesher_new(hooks_of(&t), &r);
     if (status == AQR_OK)
-      status = input_and_run(r, &input, &o);
+      status = input_and_run(r, &input, o);
     bool failed = t.allocations >= n;
     CHECK(status == (failed ? AQR_OUT_OF_MEMORY : AQR_OK));
     CHECK(!r || !failed || !has_result(r));
     if (r && failed)
     {
-      check_next_run(r, &t, &input, &o);
+      check_next_run(r, &t, &input, o);
     }
     aqr_remesher_free(r);
     CHECK(t.held == 0);
-    ++*visited;
+    ++visited;
     if (!failed || aqr_failures)
     {
-      printf("%zu allocations, %zu of them failed in turn\n", t.allocations, *visited - 1);
+      printf("%zu allocations, %zu of them failed in turn\n", t.allocations, visited - 1);
       break;
     }
   }
@@ -137,29 +146,40 @@ static void fail_everywhere(int by_points, size_t* visited)
 
 AQR_TEST(memory_that_runs_out_is_an_error_and_the_next_run_works)
 {
-  size_t visited = 0;
-  fail_everywhere(0, &visited);
+  aqr_options o = small_options(0, 0);
+  fail_everywhere(&o);
 }
 
 AQR_TEST(memory_that_runs_out_while_a_target_is_met_is_an_error)
 {
-  size_t visited = 0;
-  fail_everywhere(1, &visited);
+  aqr_options o = small_options(third_time, 0);
+  fail_everywhere(&o);
+}
+
+AQR_TEST(memory_that_runs_out_while_creases_are_given_up_is_an_error)
+{
+  aqr_options o = small_options(unaffordable, 0);
+  shape m = small_scene();
+  aqr_remesher* r = remesh(&m, &o);
+  CHECK(aqr_remesher_report(r)->given_up_edges > 0);
+  aqr_remesher_free(r);
+  shape_free(&m);
+  fail_everywhere(&o);
 }
 
 AQR_TEST(memory_that_runs_out_while_a_half_is_mirrored_is_an_error)
 {
-  size_t visited = 0;
-  fail_everywhere(2, &visited);
+  aqr_options o = small_options(third_time, 1);
+  fail_everywhere(&o);
 }
 
 AQR_TEST(a_cancel_at_any_step_stops_and_the_next_run_works)
 {
   shape m = small_scene();
   aqr_input input = shape_input(&m);
-  for (int by_points = 0; by_points < 2; by_points++)
+  for (int i = 0; i < 2; i++)
   {
-    aqr_options o = small_options(by_points);
+    aqr_options o = small_options(i ? third_time : 0, 0);
     for (size_t n = 1;; n++)
     {
       trial t = { .cancel_at = n };

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Creases that a small number of points can pay for. Every crease takes vertices along it and where it ends or turns;
+ * where those are most of what is asked for, none are left for the surface between. */
+#ifndef AQR_CREASE_BUDGET_H
+#define AQR_CREASE_BUDGET_H
+
+#include "feature_graph.h"
+
+/* What a half-edge of the array is_crease may be. */
+enum
+{
+  AQR_CREASE = 1,
+  AQR_CREASE_LOCKED = 2 /* asked for by the caller: never given up */
+};
+
+/* Points that chains take at least: those where they end or turn, and a few on every loop. */
+typedef struct aqr_chain_cost
+{
+  double creases, boundary;
+} aqr_chain_cost;
+
+/* s: cut along its creases. */
+aqr_status aqr_chains_measure(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, aqr_chain_cost* cost);
+
+/* Clears is_crease (3 * n_faces) along the creases that bend the surface least for the points they take, until half of
+ * what the creases take above `budget` is gone; *given_up, the edges cleared. What is left may then run on where
+ * creases met, and take less, or end in the open: the caller cuts and measures again. */
+aqr_status aqr_creases_give_up(
+  aqr_context* c, const aqr_surface* s, const aqr_chains* chains, double budget, uint8_t* is_crease, size_t* given_up);
+
+#endif
