@@ -168,8 +168,9 @@ public:
   ///@{
   /**
    * Whether creases of the input become lines, so that they stay edges of the output. Default: on
-   * (paper, section 3). With a target number of points only as many as can be had for a quarter of it:
-   * those that bend the surface least are given up, with a warning. Locked edges never are.
+   * (paper, section 3). Where they would take more than a quarter of a target number of points, or three
+   * quarters where the faces between them are flat, those that bend the surface least are given up, with a warning.
+   * Locked edges never are.
    */
   vtkSetMacro(FeatureLines, bool);
   vtkGetMacro(FeatureLines, bool);

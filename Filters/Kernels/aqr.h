@@ -126,8 +126,8 @@ extern "C"
                                     (paper 4.1) */
     double confidence_angle;     /**< [0, 90], 30: directions inside a face that differ by more are not
                                     trusted (4.1) */
-    int feature_lines;           /**< 0 or 1, 1: creases become lines (paper 3), but with target_points only as many
-                                    as can be had for a quarter of the points */
+    int feature_lines;           /**< 0 or 1, 1: creases become lines (paper 3), those that bend the surface least
+                                    only where target_points can pay for them */
     double feature_angle;        /**< (0, 180], 40: dihedral deviation from flat that makes an edge a crease */
     int boundary_lines;          /**< 0 or 1, 1: boundary loops become lines; 0 lets the border be cut
                                     coarsely */

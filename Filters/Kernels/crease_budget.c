@@ -9,7 +9,7 @@ static const double at_once = 0.5; /* of the excess: creases that run on then sh
 typedef struct priced
 {
   double take;  /* points */
-  double worth; /* bend per point */
+  double worth; /* bend per point; infinite where it is locked */
   size_t chain;
 } priced;
 
@@ -35,36 +35,58 @@ static double points_of(const aqr_surface* s, const aqr_chains* k, const aqr_cha
   return 1.0 / ends[end_of(s, k, a, 0)] + 1.0 / ends[end_of(s, k, a, 1)];
 }
 
+/* The dihedral angle of an edge, integrated along it. */
+static double bend_at(const aqr_surface* s, aqr_index h)
+{
+  double length = v3_norm(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
+  vec3 n = aqr_face_cross(s, aqr_face_of(h)), m = aqr_face_cross(s, aqr_face_of(aqr_any_twin(s, h)));
+  return length * atan2(v3_norm(v3_cross(n, m)), v3_dot(n, m));
+}
+
+static double bend_along(const aqr_surface* s, const aqr_chains* k, const aqr_chain* a)
+{
+  double bend = 0;
+  for (size_t i = 0; i < a->count; i++)
+    bend += bend_at(s, k->half_edges[a->first + i]);
+  return bend;
+}
+
+/* Of all edges that are not cut. */
+static double bend_elsewhere(const aqr_surface* s)
+{
+  double bend = 0;
+  for (size_t h = 0; h < 3 * s->n_faces; h++)
+    if (!aqr_is_boundary(s, (aqr_index)h) && !aqr_is_seam(s, (aqr_index)h) && s->twin[h] > h)
+      bend += bend_at(s, (aqr_index)h);
+  return bend;
+}
+
 aqr_status aqr_chains_measure(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, aqr_chain_cost* cost)
 {
-  *cost = (aqr_chain_cost){ 0, 0 };
+  *cost = (aqr_chain_cost){ 0 };
   unsigned* ends = AQR_NEW0(c, unsigned, s->n_clean);
   if (!ends)
     return AQR_OUT_OF_MEMORY;
   count_ends(s, chains, ends);
+  double bend = 0;
   for (size_t i = 0; i < chains->n_chains; i++)
   {
     const aqr_chain* a = &chains->chains[i];
     *(a->is_feature ? &cost->creases : &cost->boundary) += points_of(s, chains, a, ends);
+    bend += a->is_feature ? bend_along(s, chains, a) : 0;
   }
+  if (bend > 0)
+    cost->bend = bend / (bend + bend_elsewhere(s));
   AQR_DROP(c, ends, s->n_clean);
   return AQR_OK;
 }
 
-/* The integral of the dihedral angle along a chain: what the surface bends there; infinite where it is locked. */
-static double bend_along(const aqr_surface* s, const aqr_chains* k, const aqr_chain* a, const uint8_t* is_crease)
+static bool is_locked(const aqr_chains* k, const aqr_chain* a, const uint8_t* is_crease)
 {
-  double bend = 0;
   for (size_t i = 0; i < a->count; i++)
-  {
-    aqr_index h = k->half_edges[a->first + i];
-    if (is_crease[h] == AQR_CREASE_LOCKED)
-      return INFINITY;
-    double length = v3_norm(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
-    vec3 n = aqr_face_cross(s, aqr_face_of(h)), m = aqr_face_cross(s, aqr_face_of(aqr_any_twin(s, h)));
-    bend += length * atan2(v3_norm(v3_cross(n, m)), v3_dot(n, m));
-  }
-  return bend;
+    if (is_crease[k->half_edges[a->first + i]] == AQR_CREASE_LOCKED)
+      return true;
+  return false;
 }
 
 static int by_worth(const void* a, const void* b)
@@ -102,7 +124,7 @@ aqr_status aqr_creases_give_up(
       const aqr_chain* a = &chains->chains[i];
       double take = points_of(s, chains, a, ends);
       left += take;
-      list[n++] = (priced){ take, bend_along(s, chains, a, is_crease) / take, i };
+      list[n++] = (priced){ take, is_locked(chains, a, is_crease) ? INFINITY : bend_along(s, chains, a) / take, i };
     }
   qsort(list, n, sizeof *list, by_worth);
   const double enough = budget + (left - budget) * at_once;

@@ -13,10 +13,11 @@ enum
   AQR_CREASE_LOCKED = 2 /* asked for by the caller: never given up */
 };
 
-/* Points that chains take at least: those where they end or turn, and a few on every loop. */
+/* What there is to decide by. */
 typedef struct aqr_chain_cost
 {
-  double creases, boundary;
+  double creases, boundary; /* points that chains take at least: those where they end or turn, a few on every loop */
+  double bend;              /* the part of all bending, in [0, 1], that is along creases: most, where faces are flat */
 } aqr_chain_cost;
 
 /* s: cut along its creases. */

@@ -10,8 +10,11 @@ enum
   cookie = 0x41515233
 };
 
-static const double crease_share = 0.25, /* of the points: with more the surface between starves */
-  fewest_on_creases = 12;                /* what is left is no surface worth the loss of a block's corners */
+/* Shares of the points that creases may take: with more the surface between starves. Flat faces have no use for points
+ * of their own, so there as many more can be borne; but once that is not enough either, what a share in between keeps
+ * is worse than what the small one does (measured). */
+static const double crease_share = 0.25, share_between_flat_faces = 0.5;
+static const double fewest_on_creases = 12; /* what is left is no surface worth the loss of a block's corners */
 
 aqr_options aqr_default_options(void)
 {
@@ -104,15 +107,17 @@ uint64_t aqr_fingerprint(const double* a, size_t n)
 
 double aqr_crease_budget(const aqr_options* o, const aqr_chain_cost* cost)
 {
-  double all = aqr_line_points(o), points = fmax(all / 4, all - cost->boundary);
-  return o->density == AQR_DENSITY_POINTS ? fmax(fewest_on_creases, crease_share * points) : INFINITY;
+  const double all = aqr_line_points(o), points = fmax(all / 4, all - cost->boundary);
+  const double bearable = crease_share + share_between_flat_faces * cost->bend;
+  if (o->density != AQR_DENSITY_POINTS || cost->creases <= fmax(fewest_on_creases, bearable * points))
+    return INFINITY;
+  return fmax(fewest_on_creases, crease_share * points);
 }
 
 /* Whether creases would be given up, or come back, or others would be. */
 static bool other_creases(const aqr_chain_cost* cost, const aqr_options* a, const aqr_options* b)
 {
-  double x = aqr_crease_budget(a, cost), y = aqr_crease_budget(b, cost);
-  return aqr_differ(x, y) && cost->creases > fmin(x, y);
+  return aqr_differ(aqr_crease_budget(a, cost), aqr_crease_budget(b, cost));
 }
 
 int aqr_first_changed(const aqr_remesher* r, const aqr_options* o, uint64_t density)

@@ -152,7 +152,7 @@ int TestErrors(int, char*[])
 
   // So are creases that are more than it can pay for.
   filter->SetInputData(MakeFoldedSheet(40));
-  filter->SetTargetNumberOfPoints(100);
+  filter->SetTargetNumberOfPoints(60);
   filter->Update();
   std::cout << messages.Text << "\n";
   CHECK(messages.Errors == 0 && messages.Warnings == 1 && messages.Says("few points cannot follow all creases"));

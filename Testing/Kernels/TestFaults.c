@@ -59,8 +59,8 @@ static shape small_scene(void)
 
 enum
 {
-  unaffordable = 60, /* points for the creases of the scene: some are given up */
-  third_time = 80    /* points that are met at the third attempt: enough to see the others dropped */
+  unaffordable = 20, /* points for the creases of the scene: some are given up */
+  third_time = 60    /* points that are met at the third attempt: enough to see the others dropped */
 };
 
 static aqr_options small_options(int64_t points, int symmetry)
