@@ -84,6 +84,18 @@ bool aqr_reserve(aqr_context* c, void** p, size_t* capacity, size_t need, size_t
   return true;
 }
 
+bool aqr_trim(aqr_context* c, void** p, size_t* capacity, size_t need, size_t size)
+{
+  if (!*p || need >= *capacity)
+    return true;
+  void* less = resize(c, *p, rounded(*capacity, size), rounded(need, size));
+  if (!less)
+    return false;
+  *p = less;
+  *capacity = need;
+  return true;
+}
+
 bool aqr_step(aqr_context* c, double fraction)
 {
   if (!c->hooks.progress)

@@ -35,6 +35,10 @@ bool aqr_reserve(aqr_context* c, void** p, size_t* capacity, size_t need, size_t
 #define AQR_RESERVE(c, p, capacity, need)                                                                              \
   (((need) <= (capacity) && (p)) || aqr_reserve(c, (void**)&(p), &(capacity), need, sizeof *(p)))
 
+/* Gives back what *p has room for beyond `need` elements; false as above. */
+bool aqr_trim(aqr_context* c, void** p, size_t* capacity, size_t need, size_t size);
+#define AQR_TRIM(c, p, capacity, need) aqr_trim(c, (void**)&(p), &(capacity), need, sizeof *(p))
+
 /* Reports that `fraction` of the running stage is done; false when the caller wants to stop.
  * Cheap enough for every few thousand steps of a loop. Only on the thread that called run. */
 bool aqr_step(aqr_context* c, double fraction);

@@ -125,7 +125,7 @@ static aqr_status list_by_chord(finder* b)
   size_t n = b->l->n_samples;
   o->n_samples = n;
   o->n_on = 2 * net->n_crossings;
-  o->first = AQR_NEW0(b->c, size_t, n + 2);
+  o->first = AQR_NEW0(b->c, aqr_index, n + 2);
   o->on = AQR_NEW(b->c, aqr_index, o->n_on);
   if (!o->first || !o->on)
     return AQR_OUT_OF_MEMORY;

@@ -183,12 +183,13 @@ static aqr_status connect_line(aqr_network_builder* b, aqr_index id)
 {
   const aqr_line* line = &b->l->lines[id];
   const aqr_sample* m = b->l->samples;
+  const aqr_index* stops = b->stop_of + 2 * (size_t)id;
   size_t first = line->first, last = line->first + line->count - 1;
   walker before = { AQR_NONE, 0, 0 }, start = before;
   aqr_index edge = AQR_NONE, n = (aqr_index)b->net->n_crossings;
   aqr_status status = AQR_OK;
-  if (b->stop_of[first] != AQR_NONE)
-    before = start = (walker){ n + b->stop_of[first], first, 0 };
+  if (stops[0] != AQR_NONE)
+    before = start = (walker){ n + stops[0], first, 0 };
   for (size_t a = first; a < last; a++)
     for (size_t i = b->order.first[a]; i < b->order.first[a + 1]; i++)
     {
@@ -201,24 +202,24 @@ static aqr_status connect_line(aqr_network_builder* b, aqr_index id)
       else
       {
         AQR_TRY(join(b, line->type, &before, &here, &edge));
-        if (before.node == n + b->stop_of[first] && b->stop_of[first] != AQR_NONE)
+        if (before.node == n + stops[0] && stops[0] != AQR_NONE)
         {
           b->net->edge_at[first] = edge;
-          attach(b, b->stop_of[first], &m[first], 2 * edge);
+          attach(b, stops[0], &m[first], 2 * edge);
         }
       }
       before = here;
     }
-  if (b->stop_of[last] != AQR_NONE)
+  if (stops[1] != AQR_NONE)
   {
-    walker here = { n + b->stop_of[last], last, 0 };
+    walker here = { n + stops[1], last, 0 };
     AQR_TRY(join(b, line->type, &before, &here, &edge));
-    if (before.node == n + b->stop_of[first] && b->stop_of[first] != AQR_NONE)
+    if (before.node == n + stops[0] && stops[0] != AQR_NONE)
     {
       b->net->edge_at[first] = edge;
-      attach(b, b->stop_of[first], &m[first], 2 * edge);
+      attach(b, stops[0], &m[first], 2 * edge);
     }
-    attach(b, b->stop_of[last], &m[last], 2 * edge + 1);
+    attach(b, stops[1], &m[last], 2 * edge + 1);
   }
   else if (line->closed)
   {
@@ -517,11 +518,13 @@ aqr_status aqr_network_build(aqr_context* c, const aqr_surface* s, const aqr_lin
   aqr_status status = AQR_OK;
   net->n_samples = lines->n_samples;
   net->edge_at = AQR_NEW(c, aqr_index, lines->n_samples);
-  b.stop_of = AQR_NEW(c, aqr_index, lines->n_samples);
+  b.stop_of = AQR_NEW(c, aqr_index, 2 * lines->n_lines);
   b.node_of = AQR_NEW(c, aqr_index, s->n_clean);
   AQR_REQUIRE(net->edge_at && b.stop_of && b.node_of, AQR_OUT_OF_MEMORY);
   for (size_t i = 0; i < lines->n_samples; i++)
-    net->edge_at[i] = b.stop_of[i] = AQR_NONE;
+    net->edge_at[i] = AQR_NONE;
+  for (size_t i = 0; i < 2 * lines->n_lines; i++)
+    b.stop_of[i] = AQR_NONE;
   for (size_t i = 0; i < s->n_clean; i++)
     b.node_of[i] = AQR_NONE;
   AQR_TRY(aqr_crossings_find(c, s, lines, net, &b.order));
@@ -532,7 +535,7 @@ done:
   aqr_crossing_order_free(c, &b.order);
   AQR_DROP(c, b.alive, lines->n_lines);
   AQR_DROP(c, b.reached, lines->n_lines);
-  AQR_DROP(c, b.stop_of, lines->n_samples);
+  AQR_DROP(c, b.stop_of, 2 * lines->n_lines);
   AQR_DROP(c, b.node_of, s->n_clean);
   if (status != AQR_OK)
     aqr_network_free(c, net);

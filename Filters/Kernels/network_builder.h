@@ -17,7 +17,7 @@ typedef struct aqr_network_builder
   aqr_crossing_order order;
   aqr_index* alive;   /* per line: its nodes that are alive */
   uint8_t* reached;   /* per line: what of it lives hangs together with an edge of the surface */
-  aqr_index* stop_of; /* per sample: the stop at a line's end on a chain, or AQR_NONE */
+  aqr_index* stop_of; /* 2 per line, of its first and last sample: the stop on a chain, or AQR_NONE */
   aqr_index* node_of; /* per cleaned point: the stop of a node of the feature graph */
 } aqr_network_builder;
 

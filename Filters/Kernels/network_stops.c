@@ -34,6 +34,13 @@ static bool landing_on(const aqr_network_builder* b, const aqr_sample* a, aqr_st
   return false;
 }
 
+/* Of a sample at the end of a line. */
+static const aqr_index* stop_at_end(const aqr_network_builder* b, aqr_index sample)
+{
+  aqr_index line = b->l->samples[sample].line;
+  return &b->stop_of[2 * (size_t)line + (sample != b->l->lines[line].first)];
+}
+
 /* Stops where living lines end on chains; a line and its continuation over the seam share one. */
 static aqr_status stop_at_landings(aqr_network_builder* b)
 {
@@ -49,18 +56,18 @@ static aqr_status stop_at_landings(aqr_network_builder* b)
       aqr_stop stop;
       if (!aqr_ends_on_chain(line, k))
         continue;
-      if (line->partner[k] != AQR_NONE && b->stop_of[line->partner[k]] != AQR_NONE)
-      {
-        b->stop_of[sample] = b->stop_of[line->partner[k]];
+      aqr_index* own = &b->stop_of[2 * (size_t)i + k];
+      if (line->partner[k] != AQR_NONE)
+        *own = *stop_at_end(b, line->partner[k]);
+      if (*own != AQR_NONE)
         continue;
-      }
       if (!landing_on(b, &l->samples[sample], &stop))
         return AQR_INTERNAL;
       aqr_status status = aqr_add_stop(b, stop.chain, stop.sample, stop.t, &id);
       if (status != AQR_OK)
         return status;
       b->net->stops[id] = stop;
-      b->stop_of[sample] = id;
+      *own = id;
     }
   }
   return AQR_OK;
@@ -225,7 +232,7 @@ static aqr_status sort_stops(aqr_network_builder* b)
     rank[x.left] = (aqr_index)(kept - 1);
   }
   net->n_stops = kept;
-  for (size_t i = 0; i < b->l->n_samples; i++)
+  for (size_t i = 0; i < 2 * b->l->n_lines; i++)
     if (b->stop_of[i] != AQR_NONE)
       b->stop_of[i] = rank[b->stop_of[i]];
   AQR_DROP(b->c, rank, n);

@@ -270,14 +270,15 @@ aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chain
   r.euler = AQR_NEW(c, aqr_shared_number, r.n_items);
   r.bordered = AQR_NEW(c, aqr_shared_flag, r.n_items);
   r.picked = AQR_NEW0(c, uint8_t, s->n_faces);
-  cells.slot = AQR_NEW(c, aqr_index, s->n_faces);
-  AQR_REQUIRE(r.start && r.parent && r.euler && r.bordered && r.picked && cells.slot, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(r.start && r.parent && r.euler && r.bordered && r.picked, AQR_OUT_OF_MEMORY);
   AQR_TRY(count(&r));
   bool any = false;
   for (aqr_index i = 0; cut && i < r.n_items && !any; i++)
     any = aqr_above(r.parent, i) == i && aqr_region_needs_cut(&r, i);
   if (any)
   {
+    cells.slot = AQR_NEW(c, aqr_index, s->n_faces);
+    AQR_REQUIRE(cells.slot, AQR_OUT_OF_MEMORY);
     AQR_TRY(aqr_region_cells_list(&r, &cells));
     AQR_TRY(aqr_arcs_draw(c, &cells, lines, added));
     for (aqr_index f = 0; f < s->n_faces; f++)

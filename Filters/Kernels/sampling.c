@@ -13,9 +13,10 @@ enum
   most_rounds = 8,
   most_seeds_per_line = 1 << 20,
   score_levels = 64,
-  most_passes = 12, /* at reaching the number of points asked for */
-  most_excess = 8   /* of points over those asked for, beyond one per face of the surface: the attempt is lost, and what
-                       it may cost is bounded */
+  room_for_cuts = 16, /* of the samples: lines that keep the topology are added later */
+  most_passes = 12,   /* at reaching the number of points asked for */
+  most_excess = 8 /* of points over those asked for, beyond one per face of the surface: the attempt is lost, and what
+                     it may cost is bounded */
 };
 
 static const double seed_distance = 0.6;  /* of the spacing: nearer than this to a line of its family no line begins */
@@ -342,6 +343,8 @@ aqr_status aqr_sample_lines(aqr_context* c, const aqr_surface* s, const aqr_fiel
   if (options->points > 0)
     AQR_TRY(reach_points(&m, options->points, &r->finer));
   r->points = m.points;
+  const size_t room = lines->n_samples + lines->n_samples / room_for_cuts;
+  AQR_REQUIRE(AQR_TRIM(c, lines->samples, lines->sample_capacity, room), AQR_OUT_OF_MEMORY);
   report->lines = lines->n_lines;
   report->line_samples = lines->n_samples;
   report->proximity_queries += m.grower.cell.queries;
