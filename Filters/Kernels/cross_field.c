@@ -51,11 +51,17 @@ static double size(aqr_complex a)
   return sqrt(a.x * a.x + a.y * a.y);
 }
 
-/* The fourth power of d's direction in the point's frame; 0 where d has none there. */
-static aqr_complex in_frame(const aqr_field* field, size_t v, vec3 d)
+/* The principal directions of a point. */
+static aqr_frame frame_at(const aqr_field* field, size_t v)
 {
-  vec3 n = v3_load(field->normal + 3 * v), m = v3_load(field->min_direction + 3 * v);
-  double x = v3_dot(d, m), y = v3_dot(d, v3_cross(n, m)), r2 = x * x + y * y;
+  vec3 m = aqr_min_direction(field, v);
+  return (aqr_frame){ m, v3_cross(v3_load(field->normal + 3 * v), m) };
+}
+
+/* The fourth power of d's direction; 0 where d has none in the frame. */
+static aqr_complex in_frame(aqr_frame at, vec3 d)
+{
+  double x = v3_dot(d, at.x), y = v3_dot(d, at.y), r2 = x * x + y * y;
   if (!(r2 > 0))
     return cx(0, 0);
   aqr_complex square = cx((x * x - y * y) / r2, 2 * x * y / r2);
@@ -67,7 +73,7 @@ static aqr_complex in_frame(const aqr_field* field, size_t v, vec3 d)
 static double trust(const job* j, size_t v)
 {
   const aqr_field* f = j->field;
-  double a = f->k_min[v], b = f->k_max[v], strength = b - a, all = fabs(a) + fabs(b);
+  double a = (double)f->k_min[v], b = (double)f->k_max[v], strength = b - a, all = fabs(a) + fabs(b);
   if (!(strength > 0 && j->min_cosine < 1))
     return 0;
   double ratio = fmin(strength / all / full_anisotropy, 1);
@@ -80,7 +86,7 @@ static double trust(const job* j, size_t v)
 static aqr_complex border_edge(const job* j, aqr_index v, aqr_index at)
 {
   const aqr_surface* s = j->s;
-  return in_frame(j->field, at, v3_sub(aqr_point(s, aqr_to(s, j->s->fan[v])), aqr_point(s, v)));
+  return in_frame(frame_at(j->field, at), v3_sub(aqr_point(s, aqr_to(s, j->s->fan[v])), aqr_point(s, v)));
 }
 
 static bool leaves_seam(const job* j, aqr_index v)
@@ -121,8 +127,9 @@ static aqr_complex boundary_anchor(const job* j, aqr_index v)
   if (n > 0)
     edges = cx(edges.x / n, edges.y / n);
   vec3 p = aqr_point(s, v);
-  aqr_complex chords = cx_add(
-    in_frame(j->field, v, v3_sub(aqr_point(s, ahead), p)), in_frame(j->field, v, v3_sub(p, aqr_point(s, behind))));
+  aqr_frame own = frame_at(j->field, v);
+  aqr_complex chords =
+    cx_add(in_frame(own, v3_sub(aqr_point(s, ahead), p)), in_frame(own, v3_sub(p, aqr_point(s, behind))));
   chords = cx(chords.x / 2, chords.y / 2);
   aqr_complex best = size(edges) > size(chords) ? edges : chords;
   double w = border_weight * size(best);
@@ -166,15 +173,16 @@ static void turns(void* data, size_t begin, size_t end)
   {
     size_t v = j->active[a];
     vec3 n = v3_load(f->normal + 3 * v);
+    aqr_frame own = frame_at(f, v);
     const aqr_index* point = j->around->point + j->around->first[v];
     for (aqr_index i = j->first[a]; i < j->first[a + 1]; i++)
     {
       size_t w = point[i - j->first[a]];
-      vec3 m = v3_load(f->normal + 3 * w), d = v3_load(f->min_direction + 3 * w);
+      vec3 m = v3_load(f->normal + 3 * w), d = aqr_min_direction(f, w);
       double both = 1 + v3_dot(n, m);
       if (both > 0)
         d = v3_madd(d, -v3_dot(d, n) / both, v3_add(n, m));
-      j->turn[i] = cx_narrow(in_frame(f, v, d));
+      j->turn[i] = cx_narrow(in_frame(own, d));
     }
   }
 }
@@ -210,9 +218,9 @@ static void store(void* data, size_t begin, size_t end)
   const job* j = data;
   for (size_t v = begin; v < end; v++)
   {
-    vec3 n = v3_load(j->field->normal + 3 * v), m = v3_load(j->field->min_direction + 3 * v);
+    aqr_frame own = frame_at(j->field, v);
     double angle = atan2((double)j->from[v].y, (double)j->from[v].x) / 4;
-    v3_store(j->field->cross + 3 * v, v3_unit(v3_madd(v3_scale(m, cos(angle)), sin(angle), v3_cross(n, m))));
+    v3_narrow(j->field->cross + 3 * v, v3_madd(v3_scale(own.x, cos(angle)), sin(angle), own.y));
   }
 }
 
@@ -232,9 +240,8 @@ static void flatten(void* data, size_t begin, size_t end)
     {
       unsigned k = (i + 1) % 3, h = (i + 2) % 3;
       size_t v = s->corner[3 * f + i];
-      aqr_complex d =
-        aqr_flatten(v3_load(j->field->normal + 3 * v), v3_load(j->field->cross + 3 * v), v3_sub(p[k], p[i]),
-          v3_sub(p[h], p[i]), cx(q[k].x - q[i].x, q[k].y - q[i].y), cx(q[h].x - q[i].x, q[h].y - q[i].y));
+      aqr_complex d = aqr_flatten(v3_load(j->field->normal + 3 * v), aqr_cross(j->field, v), v3_sub(p[k], p[i]),
+        v3_sub(p[h], p[i]), cx(q[k].x - q[i].x, q[k].y - q[i].y), cx(q[h].x - q[i].x, q[h].y - q[i].y));
       j->field->flat[3 * f + i] = cx_narrow(cx_fourth(d));
     }
   }

@@ -20,17 +20,10 @@ typedef struct job
   aqr_field* field;
 } job;
 
-typedef struct frame
-{
-  vec3 x, y;
-} frame;
-
 /* The same in every iteration, as the normals are. */
-static frame frame_at(const aqr_field* field, size_t v)
+static aqr_frame frame_at(const aqr_field* field, size_t v)
 {
-  vec3 n = v3_load(field->normal + 3 * v);
-  vec3 x = v3_unit(v3_cross(n, fabs(n.x) < 0.8 ? v3(1, 0, 0) : v3(0, 1, 0)));
-  return (frame){ x, v3_cross(n, x) };
+  return aqr_frame_on(v3_load(field->normal + 3 * v));
 }
 
 typedef struct principal
@@ -50,7 +43,7 @@ static double apply(const float* f, vec3 a, vec3 b)
 
 /* Of the tensor in the plane of the averaged normal. Its eigenvectors are swapped, as normal cycles
  * have them: the larger curvature comes along the minimum direction. */
-static principal principal_of(const float* t, frame at)
+static principal principal_of(const float* t, aqr_frame at)
 {
   double a = apply(t, at.x, at.x), b = apply(t, at.y, at.y), off = apply(t, at.x, at.y);
   double mean = (a + b) / 2, d = (a - b) / 2, half = sqrt(d * d + off * off);
@@ -157,7 +150,7 @@ static void store(void* data, size_t begin, size_t end)
   const job* j = data;
   for (size_t v = begin; v < end; v++)
   {
-    frame at = frame_at(j->field, v);
+    aqr_frame at = frame_at(j->field, v);
     principal p = principal_of(j->t + 6 * v, at);
     aqr_complex d = p.min_direction;
     if (d.x == 0 && d.y == 0)
@@ -167,9 +160,9 @@ static void store(void* data, size_t begin, size_t end)
         edge = v3_sub(aqr_point(j->s, aqr_to(j->s, j->s->fan[v])), aqr_point(j->s, (aqr_index)v));
       d = cx_unit(cx(v3_dot(edge, at.x), v3_dot(edge, at.y)));
     }
-    j->field->k_min[v] = p.k_min;
-    j->field->k_max[v] = p.k_max;
-    v3_store(j->field->min_direction + 3 * v, v3_madd(v3_scale(at.x, d.x), d.y, at.y));
+    j->field->k_min[v] = (float)p.k_min;
+    j->field->k_max[v] = (float)p.k_max;
+    j->field->direction[v] = cx_narrow(d);
   }
 }
 
@@ -177,15 +170,15 @@ static bool allocate(aqr_context* c, const aqr_surface* s, aqr_field* field)
 {
   size_t n = s->n_points;
   *field = (aqr_field){ 0 };
-  field->min_direction = AQR_NEW(c, double, 3 * n);
-  field->k_min = AQR_NEW(c, double, n);
-  field->k_max = AQR_NEW(c, double, n);
-  field->cross = AQR_NEW(c, double, 3 * n);
+  field->direction = AQR_NEW(c, aqr_rotor, n);
+  field->k_min = AQR_NEW(c, float, n);
+  field->k_max = AQR_NEW(c, float, n);
+  field->cross = AQR_NEW(c, float, 3 * n);
   field->flat = AQR_NEW(c, aqr_rotor, 3 * s->n_faces);
   field->point_confidence = AQR_NEW(c, float, n);
   field->face_confidence = AQR_NEW(c, float, s->n_faces);
-  return field->min_direction && field->k_min && field->k_max && field->cross && field->flat &&
-         field->point_confidence && field->face_confidence;
+  return field->direction && field->k_min && field->k_max && field->cross && field->flat && field->point_confidence &&
+         field->face_confidence;
 }
 
 static aqr_status smooth_tensors(aqr_context* c, job* j, const aqr_tensors* tensors, int iterations)
@@ -228,7 +221,7 @@ void aqr_field_free(aqr_context* c, const aqr_surface* s, aqr_field* field)
 {
   size_t n = s->n_points;
   field->normal = NULL;
-  AQR_DROP(c, field->min_direction, 3 * n);
+  AQR_DROP(c, field->direction, n);
   AQR_DROP(c, field->k_min, n);
   AQR_DROP(c, field->k_max, n);
   AQR_DROP(c, field->cross, 3 * n);

@@ -251,7 +251,7 @@ static uint8_t type_at(const aqr_grower* g, aqr_index face, vec3 d)
 {
   double e = 0;
   for (unsigned i = 0; i < 3; i++)
-    e += fabs(v3_dot(d, v3_load(g->field->min_direction + 3 * (size_t)g->surface->corner[3 * face + i])));
+    e += fabs(v3_dot(d, aqr_min_direction(g->field, g->surface->corner[3 * face + i])));
   return e / 3 >= sqrt(0.5) ? AQR_LINE_MIN : AQR_LINE_MAX;
 }
 

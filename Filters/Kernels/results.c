@@ -210,13 +210,13 @@ static void show_points(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     size_t i = j->point_rank[v];
-    vec3 normal = v3_load(j->field->normal + 3 * v), d = v3_load(j->field->min_direction + 3 * v);
+    vec3 normal = v3_load(j->field->normal + 3 * v), d = aqr_min_direction(j->field, v);
     unscale(s, aqr_point(s, (aqr_index)v), j->points + 3 * i);
     v3_store(j->normals + 3 * i, normal);
     v3_store(j->min_direction + 3 * i, d);
     v3_store(j->max_direction + 3 * i, v3_cross(normal, d));
-    j->min_curvature[i] = j->field->k_min[v] / s->diagonal;
-    j->max_curvature[i] = j->field->k_max[v] / s->diagonal;
+    j->min_curvature[i] = (double)j->field->k_min[v] / s->diagonal;
+    j->max_curvature[i] = (double)j->field->k_max[v] / s->diagonal;
     j->point_confidence[i] = j->field->point_confidence[v];
     j->origins[i] = s->origin[v];
   }
@@ -302,8 +302,8 @@ static double curvature_across(const aqr_remesher* r, aqr_index f, vec3 p, vec3 
   for (unsigned i = 1; i < 3; i++)
     if (v3_norm2(v3_sub(aqr_point(s, s->corner[3 * f + i]), p)) < v3_norm2(v3_sub(aqr_point(s, (aqr_index)v), p)))
       v = s->corner[3 * f + i];
-  double e = v3_dot(v3_unit(d), v3_load(r->field.min_direction + 3 * v)), along = fmin(1, e * e);
-  return (r->field.k_max[v] * along + r->field.k_min[v] * (1 - along)) / s->diagonal;
+  double e = v3_dot(v3_unit(d), aqr_min_direction(&r->field, v)), along = fmin(1, e * e);
+  return ((double)r->field.k_max[v] * along + (double)r->field.k_min[v] * (1 - along)) / s->diagonal;
 }
 
 typedef struct lines_job

@@ -13,7 +13,7 @@ enum
   most_rounds = 8,
   most_seeds_per_line = 1 << 20,
   score_levels = 64,
-  room_for_cuts = 16, /* of the samples: lines that keep the topology are added later */
+  room_for_cuts = 32, /* of the samples: lines that keep the topology are added later */
   most_passes = 12,   /* at reaching the number of points asked for */
   most_excess = 8 /* of points over those asked for, beyond one per face of the surface: the attempt is lost, and what
                      it may cost is bounded */
@@ -200,9 +200,9 @@ static int level(const aqr_sampler* m, aqr_index f)
   for (unsigned i = 0; i < 3; i++)
   {
     size_t v = m->s->corner[3 * f + i];
-    double p = fabs(m->field->k_min[v]), q = fabs(m->field->k_max[v]), sum = p + q;
+    double k_min = (double)m->field->k_min[v], k_max = (double)m->field->k_max[v], sum = fabs(k_min) + fabs(k_max);
     double strength = sum / (sum + 1); /* of a curvature radius against the diagonal */
-    a += sum > 0 ? fabs(m->field->k_max[v] - m->field->k_min[v]) / sum * strength : 0;
+    a += sum > 0 ? (k_max - k_min) / sum * strength : 0;
   }
   double confidence = (double)m->field->face_confidence[f];
   double score = confidence >= m->options->min_cosine ? confidence * a / 3 : 0;
@@ -301,7 +301,7 @@ static aqr_status cover_surface(aqr_sampler* m)
     if (i % 256 == 0)
       AQR_REQUIRE(aqr_step(c, 0.9 * (double)i / (double)s->n_faces), AQR_CANCELLED);
     vec3 n = v3_unit(aqr_face_cross(s, f));
-    vec3 d = v3_load(m->field->cross + 3 * (size_t)s->corner[3 * f]);
+    vec3 d = aqr_cross(m->field, s->corner[3 * f]);
     vec3 p = { 0, 0, 0 };
     for (unsigned k = 0; k < 3; k++)
       p = v3_madd(p, 1.0 / 3, aqr_point(s, s->corner[3 * f + k]));

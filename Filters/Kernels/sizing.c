@@ -41,9 +41,9 @@ static void measure(void* data, size_t begin, size_t end)
   job* j = data;
   for (size_t v = begin; v < end; v++)
   {
-    double c = v3_dot(v3_load(j->field->cross + 3 * v), v3_load(j->field->min_direction + 3 * v));
-    double c2 = fmin(1, c * c), a = fmin(fabs(j->field->k_min[v]), j->options->largest_bend);
-    double b = fmin(fabs(j->field->k_max[v]), j->options->largest_bend);
+    double c = v3_dot(v3_widen(j->field->cross + 3 * v), aqr_min_direction(j->field, v));
+    double c2 = fmin(1, c * c), a = fmin(fabs((double)j->field->k_min[v]), j->options->largest_bend);
+    double b = fmin(fabs((double)j->field->k_max[v]), j->options->largest_bend);
     j->sizing->bend[2 * v] = (float)(a * c2 + b * (1 - c2));
     j->sizing->bend[2 * v + 1] = (float)(a * (1 - c2) + b * c2);
   }
@@ -57,14 +57,14 @@ static void blur(void* data, size_t begin, size_t end)
   const aqr_surface* s = j->s;
   for (size_t v = begin; v < end; v++)
   {
-    vec3 d = v3_load(j->field->cross + 3 * v);
+    vec3 d = v3_widen(j->field->cross + 3 * v);
     double sum[2] = { j->from[2 * v], j->from[2 * v + 1] };
     double n = 1;
     aqr_index h = s->fan[v], first = h;
     do
     {
       size_t w = aqr_to(s, h);
-      double e = fabs(v3_dot(d, v3_load(j->field->cross + 3 * w)));
+      double e = fabs(v3_dot(d, v3_widen(j->field->cross + 3 * w)));
       unsigned swap = e * e < 0.5;
       sum[0] += j->from[2 * w + swap];
       sum[1] += j->from[2 * w + !swap];
@@ -248,7 +248,7 @@ void aqr_sizing_at(const aqr_surface* s, const aqr_field* field, const aqr_sizin
   for (unsigned i = 0; i < 3; i++)
   {
     size_t v = s->corner[3 * face + i];
-    double e = fabs(v3_dot(d, v3_load(field->cross + 3 * v)));
+    double e = fabs(v3_dot(d, v3_widen(field->cross + 3 * v)));
     unsigned swap = e * e < 0.5;
     a[0] += (double)sizing->spacing[2 * v + swap];
     a[1] += (double)sizing->spacing[2 * v + !swap];

@@ -28,6 +28,16 @@ static inline vec3 v3_load(const double* p)
 {
   return (vec3){ p[0], p[1], p[2] };
 }
+static inline vec3 v3_widen(const float* p)
+{
+  return v3((double)p[0], (double)p[1], (double)p[2]);
+}
+static inline void v3_narrow(float* p, vec3 a)
+{
+  p[0] = (float)a.x;
+  p[1] = (float)a.y;
+  p[2] = (float)a.z;
+}
 static inline void v3_store(double* p, vec3 a)
 {
   p[0] = a.x;

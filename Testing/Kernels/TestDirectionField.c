@@ -66,7 +66,7 @@ static void check_frames(const model* e)
   size_t bad = 0;
   for (size_t v = 0; v < e->s.n_points; v++)
   {
-    vec3 n = v3_load(e->f.normal + 3 * v), d = v3_load(e->f.min_direction + 3 * v), x = v3_load(e->f.cross + 3 * v);
+    vec3 n = v3_load(e->f.normal + 3 * v), d = aqr_min_direction(&e->f, v), x = aqr_cross(&e->f, v);
     double worst =
       fabs(v3_norm(n) - 1) + fabs(v3_norm(d) - 1) + fabs(v3_norm(x) - 1) + fabs(v3_dot(n, d)) + fabs(v3_dot(n, x));
     float c = e->f.point_confidence[v];
@@ -86,8 +86,8 @@ AQR_TEST(smoothing_turns_directions_of_cylinder)
     double mean = 0, curvature = 0;
     for (size_t v = 0; v < e.s.n_points; v++)
     {
-      mean += off_line(v3_load(e.f.min_direction + 3 * v), v3(0, 0, 1)) / (double)e.s.n_points;
-      curvature += e.f.k_max[v] / e.s.diagonal * 0.3 / (double)e.s.n_points;
+      mean += off_line(aqr_min_direction(&e.f, v), v3(0, 0, 1)) / (double)e.s.n_points;
+      curvature += (double)e.f.k_max[v] / e.s.diagonal * 0.3 / (double)e.s.n_points;
     }
     CHECK_BELOW(mean, 1.0);
     CHECK_BELOW(fabs(curvature - 1), 0.05);
@@ -108,7 +108,7 @@ AQR_TEST(smoothing_leaves_noise)
     model e = with_field(m, 0.02, 10 * i);
     off[i] = 0;
     for (size_t v = 0; v < e.s.n_points; v++)
-      off[i] += off_line(v3_load(e.f.min_direction + 3 * v), v3(0, 0, 1)) / (double)e.s.n_points;
+      off[i] += off_line(aqr_min_direction(&e.f, v), v3(0, 0, 1)) / (double)e.s.n_points;
     finish(&e);
   }
   printf("without smoothing: %g\n", off[0]);
@@ -201,10 +201,10 @@ AQR_TEST(cross_leaves_principal_directions)
   double sum = 0, n = 0;
   for (size_t v = 0; v < e.s.n_points; v++)
   {
-    double a = e.f.k_min[v], b = e.f.k_max[v];
+    double a = (double)e.f.k_min[v], b = (double)e.f.k_max[v];
     if (b - a < 0.3 * (fabs(a) + fabs(b)) || e.f.point_confidence[v] < 0.95F)
       continue;
-    sum += off_line(v3_load(e.f.cross + 3 * v), v3_load(e.f.min_direction + 3 * v));
+    sum += off_line(aqr_cross(&e.f, v), aqr_min_direction(&e.f, v));
     n++;
   }
   CHECK(n > 0.3 * (double)e.s.n_points);
@@ -220,7 +220,7 @@ static double roughness(const model* e)
   for (aqr_index h = 0; h < 3 * e->s.n_faces; h++)
   {
     size_t v = aqr_from(&e->s, h), w = aqr_to(&e->s, h);
-    rough += off_cross(v3_load(e->f.cross + 3 * v), v3_load(e->f.cross + 3 * w)) > 10;
+    rough += off_cross(aqr_cross(&e->f, v), aqr_cross(&e->f, w)) > 10;
   }
   return rough / (3 * (double)e->s.n_faces);
 }
@@ -237,7 +237,7 @@ AQR_TEST(cross_ignores_border_of_flat_sheet)
   model e = with_field(shape_grid(30, 30, false, false, 0.3, 10, place_on_sheet), 0.05, 5);
   double worst = 0;
   for (size_t v = 0; v < e.s.n_points; v++)
-    worst = fmax(worst, off_cross(v3_load(e.f.cross + 3 * v), v3(1, 0, 0)));
+    worst = fmax(worst, off_cross(aqr_cross(&e.f, v), v3(1, 0, 0)));
   CHECK_BELOW(worst, 0.1);
   finish(&e);
 }
@@ -252,7 +252,7 @@ AQR_TEST(cross_does_not_turn_with_border)
   model e = with_field(shape_grid(100, 16, true, false, 0.3, 10, place_on_ring), 0.05, 5);
   double worst = 0;
   for (aqr_index v = 0; v < e.s.n_points; v++)
-    worst = fmax(worst, off_cross(v3_load(e.f.cross + 3 * (size_t)v), aqr_point(&e.s, v)));
+    worst = fmax(worst, off_cross(aqr_cross(&e.f, v), aqr_point(&e.s, v)));
   CHECK_BELOW(worst, 8);
   finish(&e);
 }
@@ -267,7 +267,7 @@ AQR_TEST(ragged_border_turns_cross)
   model e = with_field(m, 0.03, 5);
   double worst = 0;
   for (size_t v = 0; v < e.s.n_points; v++)
-    worst = fmax(worst, off_cross(v3_load(e.f.cross + 3 * v), v3(1, 0, 0)));
+    worst = fmax(worst, off_cross(aqr_cross(&e.f, v), v3(1, 0, 0)));
   CHECK_BELOW(worst, 15);
   finish(&e);
 }
@@ -280,7 +280,7 @@ AQR_TEST(border_turns_trusted_directions)
   model e = with_field(m, 0.03, 5);
   double worst = 0;
   for (size_t v = 0; v < e.s.n_points; v++)
-    worst = fmax(worst, off_cross(v3_load(e.f.cross + 3 * v), v3_load(e.f.min_direction + 3 * v)));
+    worst = fmax(worst, off_cross(aqr_cross(&e.f, v), aqr_min_direction(&e.f, v)));
   CHECK_BELOW(worst, 5);
   finish(&e);
 }
@@ -309,7 +309,7 @@ AQR_TEST(cross_ignores_creases)
   for (aqr_index h = 0; h < 3 * e.s.n_faces; h++)
     if (aqr_is_seam(&e.s, h) && aqr_is_seam(&e.s, e.s.fan[aqr_to(&e.s, h)]))
     {
-      worst = fmax(worst, off_cross(v3_load(e.f.cross + 3 * (size_t)aqr_to(&e.s, h)), v3(0, 1, 0)));
+      worst = fmax(worst, off_cross(aqr_cross(&e.f, aqr_to(&e.s, h)), v3(0, 1, 0)));
       n++;
     }
   CHECK(n == 58);
@@ -322,18 +322,18 @@ AQR_TEST(cross_depends_on_signs)
 {
   model e = with_field(shape_ellipsoid(25, 0.3, 14, v3(1, 0.8, 0.7)), 0.02, 3);
   size_t n = e.s.n_points;
-  double* before = malloc(3 * n * sizeof *before);
+  float* before = malloc(3 * n * sizeof *before);
   memcpy(before, e.f.cross, 3 * n * sizeof *before);
   unsigned state = 15;
   for (size_t v = 0; v < n; v++)
     if (shape_random(&state) < 0.5)
-      v3_store(e.f.min_direction + 3 * v, v3_scale(v3_load(e.f.min_direction + 3 * v), -1));
+      e.f.direction[v] = (aqr_rotor){ -e.f.direction[v].x, -e.f.direction[v].y };
   aqr_neighbours around;
   CHECK(aqr_neighbours_build(&e.c, &e.s, &around) == AQR_OK);
   CHECK(aqr_cross_field(&e.c, &e.s, &around, min_cosine, &e.f) == AQR_OK);
   double worst = 0;
   for (size_t v = 0; v < n; v++)
-    worst = fmax(worst, off_cross(v3_load(before + 3 * v), v3_load(e.f.cross + 3 * v)));
+    worst = fmax(worst, off_cross(v3_widen(before + 3 * v), aqr_cross(&e.f, v)));
   CHECK_BELOW(worst, 1e-3);
   aqr_neighbours_free(&e.c, &around);
   free(before);
@@ -360,9 +360,9 @@ AQR_TEST(threads_change_field)
   CHECK(aqr_direction_field(&other.c, &other.s, &other.t, 5, min_cosine, &other.f) == AQR_OK);
   CHECK(calls > 40);
   size_t n = one.s.n_points;
-  CHECK(!memcmp(one.f.min_direction, other.f.min_direction, 3 * n * sizeof(double)));
-  CHECK(!memcmp(one.f.cross, other.f.cross, 3 * n * sizeof(double)));
-  CHECK(!memcmp(one.f.k_max, other.f.k_max, n * sizeof(double)));
+  CHECK(!memcmp(one.f.direction, other.f.direction, n * sizeof(aqr_rotor)));
+  CHECK(!memcmp(one.f.cross, other.f.cross, 3 * n * sizeof(float)));
+  CHECK(!memcmp(one.f.k_max, other.f.k_max, n * sizeof(float)));
   CHECK(!memcmp(one.f.point_confidence, other.f.point_confidence, n * sizeof(float)));
   finish(&one);
   finish(&other);
