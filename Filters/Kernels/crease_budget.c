@@ -51,14 +51,15 @@ static double bend_along(const aqr_surface* s, const aqr_chains* k, const aqr_ch
   return bend;
 }
 
-/* Of all edges that are not cut. */
-static double bend_elsewhere(const aqr_surface* s)
+double aqr_crease_bend(const aqr_surface* s, const aqr_chains* chains)
 {
-  double bend = 0;
-  for (size_t h = 0; h < 3 * s->n_faces; h++)
-    if (!aqr_is_boundary(s, (aqr_index)h) && !aqr_is_seam(s, (aqr_index)h) && s->twin[h] > h)
-      bend += bend_at(s, (aqr_index)h);
-  return bend;
+  double along = 0, elsewhere = 0;
+  for (size_t i = 0; i < chains->n_chains; i++)
+    along += chains->chains[i].is_feature ? bend_along(s, chains, &chains->chains[i]) : 0;
+  for (aqr_index h = 0; h < 3 * s->n_faces; h++)
+    if (aqr_twin(s, h) != AQR_NONE && s->twin[h] > h)
+      elsewhere += bend_at(s, h);
+  return along > 0 ? along / (along + elsewhere) : 0;
 }
 
 aqr_status aqr_chains_measure(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, aqr_chain_cost* cost)
@@ -68,15 +69,11 @@ aqr_status aqr_chains_measure(aqr_context* c, const aqr_surface* s, const aqr_ch
   if (!ends)
     return AQR_OUT_OF_MEMORY;
   count_ends(s, chains, ends);
-  double bend = 0;
   for (size_t i = 0; i < chains->n_chains; i++)
   {
     const aqr_chain* a = &chains->chains[i];
     *(a->is_feature ? &cost->creases : &cost->boundary) += points_of(s, chains, a, ends);
-    bend += a->is_feature ? bend_along(s, chains, a) : 0;
   }
-  if (bend > 0)
-    cost->bend = bend / (bend + bend_elsewhere(s));
   AQR_DROP(c, ends, s->n_clean);
   return AQR_OK;
 }

@@ -17,11 +17,14 @@ enum
 typedef struct aqr_chain_cost
 {
   double creases, boundary; /* points that chains take at least: those where they end or turn, a few on every loop */
-  double bend;              /* the part of all bending, in [0, 1], that is along creases: most, where faces are flat */
+  double bend;              /* what aqr_crease_bend() says; 0 where nobody had to ask */
 } aqr_chain_cost;
 
-/* s: cut along its creases. */
+/* The points of all chains. s: cut along its creases. */
 aqr_status aqr_chains_measure(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, aqr_chain_cost* cost);
+
+/* The part of all bending, in [0, 1], that is along creases: most of it, where the faces between them are flat. */
+double aqr_crease_bend(const aqr_surface* s, const aqr_chains* chains);
 
 /* Clears is_crease (3 * n_faces) along the creases that bend the surface least for the points they take, until half of
  * what the creases take above `budget` is gone; *given_up, the edges cleared. What is left may then run on where

@@ -229,6 +229,8 @@ static aqr_status afford_creases(aqr_remesher* r, const aqr_options* o, uint8_t*
 {
   aqr_context* c = &r->context;
   aqr_status status = aqr_chains_measure(c, r->surface, &r->chains, &r->chain_cost);
+  if (status == AQR_OK && aqr_crease_budget(o, &r->chain_cost) < INFINITY)
+    r->chain_cost.bend = aqr_crease_bend(r->surface, &r->chains);
   const double budget = aqr_crease_budget(o, &r->chain_cost);
   aqr_chain_cost left = r->chain_cost;
   size_t given_up = 1;
