@@ -94,19 +94,21 @@ static int by_worth(const void* a, const void* b)
   return x->chain < y->chain ? -1 : x->chain > y->chain;
 }
 
-static size_t clear(const aqr_surface* s, const aqr_chains* k, size_t chain, uint8_t* is_crease)
+static size_t clear(aqr_surface* s, const aqr_chains* k, size_t chain, uint8_t* is_crease)
 {
   const aqr_chain* a = &k->chains[chain];
   for (size_t i = 0; i < a->count; i++)
   {
-    aqr_index h = k->half_edges[a->first + i];
-    is_crease[h] = is_crease[aqr_any_twin(s, h)] = 0;
+    aqr_index h = k->half_edges[a->first + i], t = aqr_any_twin(s, h);
+    is_crease[h] = is_crease[t] = 0;
+    s->twin[h] = t;
+    s->twin[t] = h;
   }
   return a->count;
 }
 
 aqr_status aqr_creases_give_up(
-  aqr_context* c, const aqr_surface* s, const aqr_chains* chains, double budget, uint8_t* is_crease, size_t* given_up)
+  aqr_context* c, aqr_surface* s, const aqr_chains* chains, double budget, uint8_t* is_crease, size_t* given_up)
 {
   aqr_status status = AQR_OK;
   unsigned* ends = AQR_NEW0(c, unsigned, s->n_clean);

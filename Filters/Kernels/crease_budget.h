@@ -27,9 +27,10 @@ aqr_status aqr_chains_measure(aqr_context* c, const aqr_surface* s, const aqr_ch
 double aqr_crease_bend(const aqr_surface* s, const aqr_chains* chains);
 
 /* Clears is_crease (3 * n_faces) along the creases that bend the surface least for the points they take, until half of
- * what the creases take above `budget` is gone; *given_up, the edges cleared. What is left may then run on where
- * creases met, and take less, or end in the open: the caller cuts and measures again. */
+ * what the creases take above `budget` is gone; *given_up, the edges cleared. They are no seams of s any more, but the
+ * points beside them stay split: chains may be built of s, nothing else. What is left may run on where creases met, and
+ * take less, or end in the open: the caller measures again. */
 aqr_status aqr_creases_give_up(
-  aqr_context* c, const aqr_surface* s, const aqr_chains* chains, double budget, uint8_t* is_crease, size_t* given_up);
+  aqr_context* c, aqr_surface* s, const aqr_chains* chains, double budget, uint8_t* is_crease, size_t* given_up);
 
 #endif

@@ -52,7 +52,7 @@ static double size(aqr_complex a)
 }
 
 /* The principal directions of a point. */
-static aqr_frame frame_at(const aqr_field* field, size_t v)
+static aqr_frame principal_frame(const aqr_field* field, size_t v)
 {
   vec3 m = aqr_min_direction(field, v);
   return (aqr_frame){ m, v3_cross(v3_load(field->normal + 3 * v), m) };
@@ -86,7 +86,7 @@ static double trust(const job* j, size_t v)
 static aqr_complex border_edge(const job* j, aqr_index v, aqr_index at)
 {
   const aqr_surface* s = j->s;
-  return in_frame(frame_at(j->field, at), v3_sub(aqr_point(s, aqr_to(s, j->s->fan[v])), aqr_point(s, v)));
+  return in_frame(principal_frame(j->field, at), v3_sub(aqr_point(s, aqr_to(s, j->s->fan[v])), aqr_point(s, v)));
 }
 
 static bool leaves_seam(const job* j, aqr_index v)
@@ -127,7 +127,7 @@ static aqr_complex boundary_anchor(const job* j, aqr_index v)
   if (n > 0)
     edges = cx(edges.x / n, edges.y / n);
   vec3 p = aqr_point(s, v);
-  aqr_frame own = frame_at(j->field, v);
+  aqr_frame own = principal_frame(j->field, v);
   aqr_complex chords =
     cx_add(in_frame(own, v3_sub(aqr_point(s, ahead), p)), in_frame(own, v3_sub(p, aqr_point(s, behind))));
   chords = cx(chords.x / 2, chords.y / 2);
@@ -173,7 +173,7 @@ static void turns(void* data, size_t begin, size_t end)
   {
     size_t v = j->active[a];
     vec3 n = v3_load(f->normal + 3 * v);
-    aqr_frame own = frame_at(f, v);
+    aqr_frame own = principal_frame(f, v);
     const aqr_index* point = j->around->point + j->around->first[v];
     for (aqr_index i = j->first[a]; i < j->first[a + 1]; i++)
     {
@@ -218,7 +218,7 @@ static void store(void* data, size_t begin, size_t end)
   const job* j = data;
   for (size_t v = begin; v < end; v++)
   {
-    aqr_frame own = frame_at(j->field, v);
+    aqr_frame own = principal_frame(j->field, v);
     double angle = atan2((double)j->from[v].y, (double)j->from[v].x) / 4;
     v3_narrow(j->field->cross + 3 * v, v3_madd(v3_scale(own.x, cos(angle)), sin(angle), own.y));
   }

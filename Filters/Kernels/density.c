@@ -7,7 +7,6 @@
 #include "pipeline.h"
 #include "regions.h"
 #include "sampling.h"
-#include "subdivide.h"
 
 #include <string.h>
 

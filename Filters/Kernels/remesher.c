@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pipeline: surface -> features -> curvature -> direction field -> sizing -> lines -> network -> faces -> fit. */
 #include "chain_places.h"
-#include "crease_budget.h"
 #include "feature_error.h"
 #include "fit.h"
 #include "pipeline.h"
-#include "subdivide.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +15,7 @@ static const double corner_angle = 45;    /* a chain turning more sharply has a 
 static const double shortest_feature = 0.02;
 enum
 {
-  most_economies = 12
+  most_economies = 12 /* each halves what creases take too much */
 };
 static const double sharpest = 2; /* over the averaging radius: bends sharper than that it cannot tell from noise */
 static const double least_radius = 0.001;
@@ -236,11 +234,14 @@ static aqr_status afford_creases(aqr_remesher* r, const aqr_options* o, uint8_t*
   size_t given_up = 1;
   for (int i = 0; status == AQR_OK && i < most_economies && left.creases > budget && given_up; i++)
   {
-    AQR_TRY(aqr_creases_give_up(c, r->surface, &r->chains, budget, crease, &given_up));
-    AQR_TRY(cut_open(r, crease, n));
-    AQR_TRY(aqr_chains_measure(c, r->surface, &r->chains, &left));
+    AQR_TRY(aqr_creases_give_up(c, &r->cut, &r->chains, budget, crease, &given_up));
+    aqr_chains_free(c, &r->chains);
+    AQR_TRY(aqr_chains_build(c, &r->cut, corner_angle, &r->chains));
+    AQR_TRY(aqr_chains_measure(c, &r->cut, &r->chains, &left));
     r->report.given_up_edges += given_up;
   }
+  if (r->report.given_up_edges)
+    AQR_TRY(cut_open(r, crease, n));
 done:
   return status;
 }
