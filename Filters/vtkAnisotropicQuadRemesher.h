@@ -29,7 +29,7 @@
  *
  * Stages are cached: after a change of the density only the stages that read it run again; the
  * curvature and the direction field are computed again only when the input or one of their own
- * parameters changed. The result does not depend on the number of threads.
+ * parameters changed, or the radius of averaging with the density (SetCurvatureRadius). The result does not depend on the number of threads.
  *
  * After an error all outputs are empty, GetErrorCode() is vtkErrorCode::UserError plus the value of
  * aqr_status (see aqr.h), and the next good Update() works. An abort leaves all outputs empty.
@@ -141,7 +141,9 @@ public:
   /**
    * Radius of the ball over which curvature tensors are averaged, as a fraction of the diagonal of
    * the input's bounding box. Larger smooths noise and small detail away; where the ball is
-   * smaller than the input's edges it grows. Range [0, 0.2], default 0.01 (paper, section 2).
+   * smaller than the input's edges it grows. It follows the density: where the points of the output
+   * are to lie closer than 1/120 of the diagonal half of this radius is taken, closer than 1/240 a
+   * quarter. Range [0, 0.2], default 0.01 (paper, section 2).
    */
   vtkSetClampMacro(CurvatureRadius, double, 0.0, 0.2);
   vtkGetMacro(CurvatureRadius, double);

@@ -121,25 +121,27 @@ extern "C"
     const double* density_scale; /**< NULL, or one factor per input point, > 0: points per area are multiplied by it,
                                     by no more than 1e6 and no less than 1e-6; where target_points are asked
                                     for, only what one place has against another counts */
-    double curvature_radius;     /**< [0, 0.2], 0.01: averaging ball of the curvature tensors (paper 2) */
-    int smoothing_iterations;    /**< [0, 1000], 5: confidence-weighted smoothing of the tensors
-                                    (paper 4.1) */
-    double confidence_angle;     /**< [0, 90], 30: directions inside a face that differ by more are not
-                                    trusted (4.1) */
-    int feature_lines;           /**< 0 or 1, 1: creases become lines (paper 3), those that bend the surface least
-                                    only where target_points can pay for them */
-    double feature_angle;        /**< (0, 180], 40: dihedral deviation from flat that makes an edge a crease */
-    int boundary_lines;          /**< 0 or 1, 1: boundary loops become lines; 0 lets the border be cut
-                                    coarsely */
-    double largest_spacing;      /**< [1e-4, 1], 0.05: no two neighbouring lines are meant to be farther
-                                    apart (3.2); with a target, not held to below 2.2 times the spacing
-                                    that would spread the points evenly. Neither it nor another option brings them nearer
-                                    than a quarter of the root of the area that a point of the cleaned input has */
-    double anisotropy;           /**< [0, 1], 1: how far faces are stretched where curvatures differ; 0: squares,
-                                    as fine as the larger curvature asks for */
-    double adaptivity;           /**< [0, 1], 1: how far density follows curvature; 0: everywhere as for the mean */
-    int pure_quads;              /**< 0 or 1, 0. 1: lines twice as far apart, then every face cut into quads by its
-                                    centre and the middles of its edges */
+    double curvature_radius;   /**< [0, 0.2], 0.01: averaging ball of the curvature tensors (paper 2), where points are
+                                  to lie 1/120 and more apart; half where less, a quarter where less than 1/240. A
+                                  tolerance stands for 1.7 / tolerance points. Never less than about two edges */
+    int smoothing_iterations;  /**< [0, 1000], 5: confidence-weighted smoothing of the tensors
+                                  (paper 4.1) */
+    double confidence_angle;   /**< [0, 90], 30: directions inside a face that differ by more are not
+                                  trusted (4.1) */
+    int feature_lines;         /**< 0 or 1, 1: creases become lines (paper 3), those that bend the surface least
+                                  only where target_points can pay for them */
+    double feature_angle;      /**< (0, 180], 40: dihedral deviation from flat that makes an edge a crease */
+    int boundary_lines;        /**< 0 or 1, 1: boundary loops become lines; 0 lets the border be cut
+                                  coarsely */
+    double largest_spacing;    /**< [1e-4, 1], 0.05: no two neighbouring lines are meant to be farther
+                                  apart (3.2); with a target, not held to below 2.2 times the spacing
+                                  that would spread the points evenly. Neither it nor another option brings them nearer
+                                  than a quarter of the root of the area that a point of the cleaned input has */
+    double anisotropy;         /**< [0, 1], 1: how far faces are stretched where curvatures differ; 0: squares,
+                                  as fine as the larger curvature asks for */
+    double adaptivity;         /**< [0, 1], 1: how far density follows curvature; 0: everywhere as for the mean */
+    int pure_quads;            /**< 0 or 1, 0. 1: lines twice as far apart, then every face cut into quads by its
+                                  centre and the middles of its edges */
     int symmetry;              /**< 0 or 1, 0. 1: the mesh is symmetric about a plane. What lies on the plane's positive
                                   side is remeshed and mirrored, whatever lies on the other; the field and the
                                   lines are those of that side */

@@ -38,6 +38,7 @@ struct aqr_remesher
   uint64_t done_density; /* fingerprint of the density array */
   size_t n_input_points;
   aqr_surface base;     /* cleaned */
+  double area;          /* of it */
   aqr_surface half;     /* of it, when the output is to be symmetric */
   aqr_surface cut;      /* cut open along creases, when there are any */
   aqr_surface* surface; /* the one in use */
@@ -107,6 +108,8 @@ void aqr_end_stage(aqr_remesher* r, int stage, double began);
 aqr_status aqr_check_options(aqr_remesher* r, const aqr_options* o);
 /* Points that creases may take (options.c): infinitely many where no number of points is asked for. */
 double aqr_crease_budget(const aqr_options* o, const aqr_chain_cost* cost);
+/* Of the balls that curvature is averaged over, fraction of the diagonal (options.c). */
+double aqr_averaging_radius(const aqr_remesher* r, const aqr_options* o);
 /* Of n factors on the density, which may be NULL. */
 uint64_t aqr_fingerprint(const double* a, size_t n);
 /* The first stage that reads an option which changed since the last run. */

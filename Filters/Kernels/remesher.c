@@ -167,7 +167,10 @@ aqr_status aqr_remesher_set_input(aqr_remesher* r, const aqr_input* input)
   aqr_status status = aqr_surface_build(&r->context, input, longest_edge, &r->base, &r->surface_report);
   r->report = r->surface_report;
   if (status == AQR_OK)
+  {
+    r->area = aqr_surface_area(&r->base);
     r->valid = AQR_STAGE_SURFACE;
+  }
   aqr_end_stage(r, AQR_STAGE_SURFACE, began);
   return status;
 }
@@ -291,7 +294,7 @@ static aqr_status run_cached(
 
 static aqr_status run_curvature(aqr_remesher* r, const aqr_options* o)
 {
-  aqr_status status = aqr_curvature_tensors(&r->context, r->surface, o->curvature_radius, &r->tensors);
+  aqr_status status = aqr_curvature_tensors(&r->context, r->surface, aqr_averaging_radius(r, o), &r->tensors);
   if (status == AQR_OK && r->surface->mirrored)
   {
     const aqr_plane plane = aqr_symmetry_plane(o);
@@ -311,7 +314,7 @@ static aqr_status run_sizing(aqr_remesher* r, const aqr_options* o)
 {
   const aqr_sizing_options sizing = { .density = o->density_scale,
     .largest_spacing = o->largest_spacing,
-    .largest_bend = sharpest / fmax(o->curvature_radius, least_radius),
+    .largest_bend = sharpest / fmax(aqr_averaging_radius(r, o), least_radius),
     .anisotropy = o->anisotropy,
     .adaptivity = o->adaptivity,
     .coarser = o->pure_quads ? sqrt(AQR_QUADS_PER_FACE) : 1 };

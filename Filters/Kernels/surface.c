@@ -434,6 +434,14 @@ done:
   return status;
 }
 
+double aqr_surface_area(const aqr_surface* s)
+{
+  double area = 0;
+  for (aqr_index f = 0; f < s->n_faces; f++)
+    area += v3_norm(aqr_face_cross(s, f)) / 2;
+  return area;
+}
+
 /* Triangles in order, and which meet. */
 static aqr_status arrange(builder* b, bool unique)
 {

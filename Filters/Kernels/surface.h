@@ -107,6 +107,9 @@ static inline vec3 aqr_input_point(const aqr_input* in, size_t i)
            : v3_load(in->points_d + 3 * i);
 }
 
+/* Of all faces, of a surface whose diagonal is 1. */
+double aqr_surface_area(const aqr_surface* s);
+
 /* Numbers faces and points along a space-filling curve and places the points (surface_order.c), before adjacency is
  * known: centre and diagonal are set, and corners are input points still. The fan of each point is set to the first of
  * its half-edges. */

@@ -282,6 +282,58 @@ AQR_TEST(radius_and_smoothing_calm_a_noisy_field)
   shape_free(&m);
 }
 
+static uint64_t hash_curvatures(const aqr_remesher* r)
+{
+  const aqr_field_view* f = aqr_remesher_field(r);
+  return hash_bytes(0, f->max_curvature, f->number_of_points * sizeof *f->max_curvature);
+}
+
+/* A noisy tube so thin that few points lie close on it. */
+static shape rough_wire(void)
+{
+  shape m = shape_cylinder(24, 5);
+  unsigned state = 3;
+  for (size_t i = 0; i < 3 * m.n_points; i++)
+    m.points[i] *= (i % 3 == 2 ? 1 : 0.05) * (1 + 0.05 * (shape_random(&state) - 0.5));
+  return m;
+}
+
+AQR_TEST(a_ball_wider_than_the_faces_does_not_hide_the_curvature_they_follow)
+{
+  shape m = rough_wire();
+  const double area = shape_turn * 0.3 * 0.05; /* of a tube as long as the diagonal */
+  aqr_options o = options_for_points(0);
+  o.curvature_radius = 0.04;
+  aqr_remesher* r = NULL;
+  uint64_t seen[3], plain[3];
+  for (int k = 0; k < 3; k++) /* spacings of 1/90, 1/180, 1/360 */
+  {
+    o.target_points = (int64_t)(area * 8100 * (1 << 2 * k));
+    if (!r)
+      r = remesh(&m, &o);
+    CHECK(again(r, o) == AQR_OK);
+    seen[k] = hash_curvatures(r);
+  }
+  aqr_options t = aqr_default_options(); /* a tolerance stands for points */
+  for (int k = 0; k < 3; k++)
+  {
+    t.curvature_radius = 0.04;
+    t.tolerance = 1.7 / (area * 8100 * (1 << 2 * k));
+    CHECK(again(r, t) == AQR_OK && hash_curvatures(r) == seen[k]);
+  }
+  o.target_points = (int64_t)(area * 8100);
+  for (int k = 0; k < 3; k++) /* the radii that these stand for */
+  {
+    o.curvature_radius = 0.04 / (1 << k);
+    CHECK(again(r, o) == AQR_OK);
+    plain[k] = hash_curvatures(r);
+    CHECK(seen[k] == plain[k]);
+  }
+  CHECK(plain[0] != plain[1] && plain[1] != plain[2] && plain[0] != plain[2]);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
 AQR_TEST(the_confidence_angle_decides_which_directions_lead_lines)
 {
   shape m = shape_sphere(16, 8);
@@ -423,6 +475,20 @@ AQR_TEST(a_change_of_density_alone_reuses_the_field_and_gives_what_a_fresh_run_g
     CHECK(again(r, o) == AQR_OK && hash_results(r) == hash_results(other));
     aqr_remesher_free(other);
   }
+  aqr_remesher_free(fresh);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
+AQR_TEST(a_density_that_asks_for_other_curvatures_gives_what_a_fresh_run_gives)
+{
+  shape m = rough_wire();
+  aqr_options few = options_for_points(300), many = options_for_points(3000);
+  few.curvature_radius = many.curvature_radius = 0.04;
+  aqr_remesher *r = remesh(&m, &few), *fresh = remesh(&m, &many);
+  const uint64_t revision = aqr_remesher_field(r)->revision;
+  CHECK(again(r, many) == AQR_OK && aqr_remesher_field(r)->revision != revision);
+  CHECK(hash_results(r) == hash_results(fresh));
   aqr_remesher_free(fresh);
   aqr_remesher_free(r);
   shape_free(&m);
