@@ -16,12 +16,12 @@ enum
   batch_work = 1 << 18 /* points to visit between two looks at the progress hook */
 };
 
-static const double least_radius = 2; /* in mean lengths of the edges around the point */
-static const double least_root =
+static const double least_edges = 2; /* in mean lengths of the edges around the point */
+static const double least_roots =
   3.5; /* in roots of the area around it: less where edges are long and the triangles thin */
-static const double full_ball = 14; /* areas of a point in a squared radius: some 40 points inside */
-static const double spacing = 0.4;  /* between shared balls, in radii: every point is this near to one */
-static const double reach = 0.65;   /* up to here a shared ball is blended in, in radii */
+static const double full_ball = 6; /* areas of a point in a squared radius: some 20 points inside */
+static const double spacing = 0.4; /* between shared balls, in radii: every point is this near to one */
+static const double reach = 0.65;  /* up to here a shared ball is blended in, in radii */
 
 typedef struct lump /* eight numbers, a cache line */
 {
@@ -141,16 +141,20 @@ static void lump_points(void* data, size_t begin, size_t end)
   }
 }
 
+static double least_radius_at(const job* j, aqr_index v)
+{
+  return lesser(least_edges * j->length[v], least_roots * sqrt(j->lumps[v].area));
+}
+
 static double radius_at(const job* j, aqr_index v)
 {
-  return greater(j->radius, lesser(least_radius * j->length[v], least_root * sqrt(j->lumps[v].area)));
+  return greater(j->radius, least_radius_at(j, v));
 }
 
 /* Of balls that hold many points neighbours may share one. */
 static bool shares(const job* j, aqr_index v)
 {
-  double r = radius_at(j, v);
-  return r * r > full_ball * j->lumps[v].area;
+  return j->radius > least_radius_at(j, v) && j->radius * j->radius > full_ball * j->lumps[v].area;
 }
 
 /* Whether a ball of this radius may stand in for that of v: not where it averages over far more. */
