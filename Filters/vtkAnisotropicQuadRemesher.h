@@ -29,7 +29,8 @@
  *
  * Stages are cached: after a change of the density only the stages that read it run again; the
  * curvature and the direction field are computed again only when the input or one of their own
- * parameters changed, or the radius of averaging with the density (SetCurvatureRadius). The result does not depend on the number of threads.
+ * parameters changed, or the radius of averaging with the density (SetCurvatureRadius). The result
+ * does not depend on the number of threads.
  *
  * After an error all outputs are empty, GetErrorCode() is vtkErrorCode::UserError plus the value of
  * aqr_status (see aqr.h), and the next good Update() works. An abort leaves all outputs empty.

@@ -140,9 +140,8 @@ std::vector<Option> AllOptions(Filter* filter, Options& options)
       "(normal and a point); what lies to where the normal points is mirrored; default: none",
       [filter](const std::string& value) { SetSymmetry(filter, value); } },
     AQR_NUMBER("--curvature-radius", "F", CurvatureRadius, false,
-      "radius over which curvature is averaged, as a fraction of the diagonal; half of it for points closer than 1/120 "
-      "of "
-      "the diagonal, a quarter below 1/240"),
+      "radius over which curvature is averaged, as a fraction of the diagonal; half of it where points lie closer than "
+      "1/120 of the diagonal, a quarter below 1/240"),
     AQR_NUMBER("--smoothing", "N", SmoothingIterations, true, "smoothing iterations of the direction field"),
     AQR_NUMBER("--confidence-angle", "A", ConfidenceAngle, false,
       "degrees by which directions may differ inside a face before it counts as isotropic"),
