@@ -15,9 +15,9 @@ enum
   damp_rounds = 6
 };
 
-static const double hold_first = 5;      /* along the surface, where the error says little, in the first round */
-static const double hold_tangent = 0.02; /* and in the others */
-static const double farthest_move = 0.3; /* of the shortest edge at a vertex, in one round */
+static const double hold_first = 0.5;    /* along the surface, where the error says little, in the first round */
+static const double hold_tangent = 1e-3; /* and in the others */
+static const double farthest_move = 0.5; /* of the shortest edge at a vertex, in one round */
 static const double least_sine = 0.3;    /* of a corner's angle: a move does not make it smaller than that */
 static const double open_height = 0.01;  /* of a corner that was straight, over the line between its neighbours */
 static const double farthest_sample =
@@ -71,12 +71,11 @@ static aqr_status allocate(aqr_context* c, aqr_fitter* f)
   f->block = AQR_NEW(c, double, 6 * n);
   f->inverse = AQR_NEW(c, double, 6 * n);
   f->product = AQR_NEW(c, double, n);
-  f->error = AQR_NEW(c, double, n);
   f->back = AQR_NEW0(c, uint8_t, n);
   f->folds = AQR_NEW(c, aqr_fit_flag, n);
   return f->triangles && f->first_corner && f->corners && f->links && f->move && f->residual && f->direction &&
-             f->image && f->before && f->across && f->trace && f->block && f->inverse && f->product && f->error &&
-             f->back && f->folds
+             f->image && f->before && f->across && f->trace && f->block && f->inverse && f->product && f->back &&
+             f->folds
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
 }
@@ -99,7 +98,6 @@ static void release(aqr_context* c, aqr_fitter* f)
   AQR_DROP(c, f->block, 6 * n);
   AQR_DROP(c, f->inverse, 6 * n);
   AQR_DROP(c, f->product, n);
-  AQR_DROP(c, f->error, n);
   AQR_DROP(c, f->back, n);
   AQR_DROP(c, f->folds, n);
 }
@@ -165,7 +163,7 @@ static void measure(void* data, size_t begin, size_t end)
     for (unsigned k = 0; k < 3; k++)
       p[k] = aqr_pm_point(f->m, t->v[k]);
     vec3 ab = v3_sub(p[1], p[0]), ac = v3_sub(p[2], p[0]), cross = v3_cross(ab, ac), normal = v3_unit(cross);
-    double area = 0.5 * v3_norm(cross), error = 0;
+    double area = 0.5 * v3_norm(cross);
     double reach =
       greater(greater(v3_norm2(ab), v3_norm2(ac)), v3_norm2(v3_sub(ab, ac))) * farthest_sample * farthest_sample;
     for (unsigned k = 0; k < AQR_FIT_SAMPLES; k++)
@@ -176,7 +174,6 @@ static void measure(void* data, size_t begin, size_t end)
       aqr_closest below;
       aqr_closest_near(s, x->face, q, most_steps, true, &below);
       vec3 n = v3_unit(aqr_face_cross(s, below.place.face));
-      error += area * aqr_fit_weight[k] * lesser(reach, below.distance2);
       bool use = below.distance2 < reach && v3_dot(n, normal) > least_cosine;
       double a = use ? sqrt(area * aqr_fit_weight[k]) : 0;
       x->normal[0] = (float)(a * n.x);
@@ -185,31 +182,6 @@ static void measure(void* data, size_t begin, size_t end)
       x->distance = use ? (float)(a * v3_dot(v3_sub(below.position, q), n)) : 0;
       x->face = below.place.face;
     }
-    t->error = (float)error;
-  }
-}
-
-/* Samples of vertices taken back get their distance from the plane that was found below them. */
-static void shift(void* data, size_t begin, size_t end)
-{
-  aqr_fitter* f = data;
-  for (size_t i = begin; i < end; i++)
-  {
-    aqr_fit_triangle* t = &f->triangles[i];
-    if (!f->back[t->v[0]] && !f->back[t->v[1]] && !f->back[t->v[2]])
-      continue;
-    double error = 0;
-    for (unsigned k = 0; k < AQR_FIT_SAMPLES; k++)
-    {
-      aqr_fit_sample* x = &t->at[k];
-      vec3 d = v3(0, 0, 0);
-      for (unsigned j = 0; j < 3; j++)
-        if (f->back[t->v[j]])
-          d = v3_madd(d, aqr_fit_place[k][j], f->move[t->v[j]]);
-      x->distance += (float)v3_dot(d, v3((double)x->normal[0], (double)x->normal[1], (double)x->normal[2]));
-      error += (double)(x->distance * x->distance);
-    }
-    t->error = (float)error;
   }
 }
 
@@ -333,47 +305,6 @@ static void settle(void* data, size_t begin, size_t end)
   }
 }
 
-static double error_around(const aqr_fitter* f, size_t v)
-{
-  double sum = 0;
-  for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
-    sum += (double)f->triangles[f->corners[i] / 3].error;
-  return sum;
-}
-
-/* Takes the last move back where the error grew. */
-static void take_back(void* data, size_t begin, size_t end)
-{
-  aqr_fitter* f = data;
-  for (size_t v = begin; v < end; v++)
-  {
-    f->back[v] = error_around(f, v) > f->error[v];
-    if (f->back[v])
-      f->m->vertices[v].position = f->before[v];
-  }
-}
-
-static void note_error(void* data, size_t begin, size_t end)
-{
-  aqr_fitter* f = data;
-  for (size_t v = begin; v < end; v++)
-    f->error[v] = error_around(f, v);
-}
-
-/* Measures the error after a move, and takes back what made it larger. */
-static aqr_status judge(aqr_context* c, aqr_fitter* f, bool last, double from, double to)
-{
-  aqr_status status = AQR_OK;
-  AQR_TRY(aqr_parallel(c, f->m->n_faces, triangulate, f, from, from));
-  AQR_TRY(aqr_parallel(c, f->n_triangles, measure, f, from, to));
-  list_corners(f);
-  AQR_TRY(aqr_parallel(c, f->m->n_vertices, take_back, f, to, to));
-  if (!last)
-    AQR_TRY(aqr_parallel(c, f->n_triangles, shift, f, to, to));
-done:
-  return status;
-}
-
 /* ---- straight corners ---- */
 
 /* The smallest sine of the corners of triangles and quads that change where v moves to p. */
@@ -447,18 +378,18 @@ aqr_status aqr_fit(aqr_context* c, const aqr_surface* s, const double* normals, 
   AQR_TRY(allocate(c, &f));
   AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, 0.1, 0.1));
   AQR_TRY(aqr_parallel(c, f.n_triangles, start_samples, &f, 0.1, 0.1));
-  AQR_TRY(aqr_parallel(c, f.n_triangles, measure, &f, 0.1, 0.25));
-  list_corners(&f);
+  AQR_TRY(aqr_fit_note_edges(c, &f, 0.1));
   for (unsigned round = 0; round < rounds; round++)
   {
-    double at = 0.25 + 0.65 * round / rounds, next = 0.25 + 0.65 * (round + 1) / rounds;
+    double from = 0.1 + 0.8 * round / rounds, to = 0.1 + 0.8 * (round + 1) / rounds;
     f.hold = round ? hold_tangent : hold_first;
-    AQR_TRY(aqr_parallel(c, n, note_error, &f, at, at));
-    AQR_TRY(aqr_fit_solve(c, &f, at));
-    AQR_TRY(aqr_parallel(c, n, limit, &f, at, at));
-    AQR_TRY(aqr_parallel(c, n, apply, &f, at, at));
-    AQR_TRY(damp(c, &f, at));
-    AQR_TRY(judge(c, &f, round + 1 == rounds, at, next));
+    AQR_TRY(aqr_parallel(c, f.n_triangles, measure, &f, from, to));
+    list_corners(&f);
+    AQR_TRY(aqr_fit_solve(c, &f, to));
+    AQR_TRY(aqr_parallel(c, n, limit, &f, to, to));
+    AQR_TRY(aqr_parallel(c, n, apply, &f, to, to));
+    AQR_TRY(damp(c, &f, to));
+    AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, to, to));
   }
   open_corners(m);
   AQR_TRY(aqr_parallel(c, m->n_faces, triangulate, &f, 0.9, 0.9));

@@ -10,7 +10,7 @@ enum
 
 static const double least_residual = 1e-3; /* of the first, squared: the solver stops */
 static const double hold_normal = 1e-3;    /* of a vertex in its place, relative to its part of the error */
-static const double hold_edge = 0.12;      /* against turning, relative to its ends' parts of the error */
+static const double hold_edge = 0.02;      /* against turning, relative to its ends' parts of the error */
 
 const double aqr_fit_place[AQR_FIT_SAMPLES][3] = { { 0.108103018168070, 0.445948490915965, 0.445948490915965 },
   { 0.445948490915965, 0.108103018168070, 0.445948490915965 },
@@ -106,22 +106,51 @@ static void gather(void* data, size_t begin, size_t end)
   }
 }
 
-/* Edges are held against turning: their ends may move along the surface together, as lines do that are moved or spaced
- * anew, but not one against the other across the edge. */
-static void hold_edges(void* data, size_t begin, size_t end)
+static void note_edges(void* data, size_t begin, size_t end)
 {
   aqr_fitter* f = data;
   const aqr_polygon_mesh* m = f->m;
   for (size_t e = begin; e < end; e++)
   {
-    aqr_index u = aqr_pm_from(m, (aqr_index)(2 * e)), v = aqr_pm_to(m, (aqr_index)(2 * e));
-    const aqr_vertex *a = &m->vertices[u], *b = &m->vertices[v];
+    aqr_index h = (aqr_index)(2 * e);
+    const aqr_vertex *a = &m->vertices[aqr_pm_from(m, h)], *b = &m->vertices[aqr_pm_to(m, h)];
     vec3 across = v3_cross(v3_add(a->normal, b->normal), v3_sub(b->position, a->position));
-    f->across[e] = v3_scale(v3_unit_or(across, v3(0, 0, 0)), sqrt(hold_edge * (f->trace[u] + f->trace[v])));
+    f->across[e] = v3_unit_or(across, v3(0, 0, 0));
   }
 }
 
-/* Adds what holds the vertices, and sets the solver up. Fixed vertices have no equations. */
+aqr_status aqr_fit_note_edges(aqr_context* c, aqr_fitter* f, double at)
+{
+  return aqr_parallel(c, f->m->n_half_edges / 2, note_edges, f, at, at);
+}
+
+/* Edges are held in the direction of their line: their ends may move along the surface together, as lines do that are
+ * moved or spaced anew, but what one moves against the other across the edge is drawn back. */
+static void hold_edges(aqr_fitter* f, size_t v)
+{
+  const aqr_polygon_mesh* m = f->m;
+  double* a = f->block + 6 * v;
+  aqr_index out = m->vertices[v].out, h = out;
+  do
+  {
+    aqr_index w = aqr_pm_to(m, h);
+    vec3 n = f->across[h >> 1], edge = v3_sub(aqr_pm_point(m, w), aqr_pm_point(m, (aqr_index)v));
+    double hold = hold_edge * (f->trace[v] + f->trace[w]);
+    const double product[6] = { n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z };
+    aqr_fit_link* to = links_of(f, v);
+    while (to->to != w) /* every edge is one of triangles */
+      to++;
+    for (unsigned d = 0; d < 6; d++)
+    {
+      a[d] += hold * product[d];
+      to->block[d] -= (float)(hold * product[d]);
+    }
+    f->residual[v] = v3_madd(f->residual[v], hold * v3_dot(edge, n), n);
+    h = aqr_pm_next_around(m, h);
+  } while (h != out);
+}
+
+/* Adds what holds edges and vertices, and sets the solver up. Fixed vertices have no equations. */
 static void begin_rows(void* data, size_t begin, size_t end)
 {
   aqr_fitter* f = data;
@@ -129,21 +158,7 @@ static void begin_rows(void* data, size_t begin, size_t end)
   {
     const aqr_vertex* x = &f->m->vertices[v];
     double *a = f->block + 6 * v, *inverse = f->inverse + 6 * v, trace = f->trace[v];
-    aqr_index h = x->out;
-    do
-    {
-      vec3 n = f->across[h >> 1];
-      const double product[6] = { n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z };
-      aqr_fit_link* to = links_of(f, v);
-      while (to->to != aqr_pm_to(f->m, h)) /* every edge is one of triangles */
-        to++;
-      for (unsigned d = 0; d < 6; d++)
-      {
-        a[d] += product[d];
-        to->block[d] -= (float)product[d];
-      }
-      h = aqr_pm_next_around(f->m, h);
-    } while (h != x->out);
+    hold_edges(f, v);
     vec3 e[3] = { held(f, x, trace, v3(1, 0, 0)), held(f, x, trace, v3(0, 1, 0)), held(f, x, trace, v3(0, 0, 1)) };
     const double hold[6] = { e[0].x, e[1].y, e[2].z, e[0].y, e[0].z, e[1].z };
     for (unsigned d = 0; d < 6; d++)
@@ -218,7 +233,6 @@ aqr_status aqr_fit_solve(aqr_context* c, aqr_fitter* f, double at)
   aqr_status status = AQR_OK;
   size_t n = f->m->n_vertices;
   AQR_TRY(aqr_parallel(c, n, gather, f, at, at));
-  AQR_TRY(aqr_parallel(c, f->m->n_half_edges / 2, hold_edges, f, at, at));
   AQR_TRY(aqr_parallel(c, n, begin_rows, f, at, at));
   double rho = sum_of_products(f), first = rho;
   for (unsigned step = 0; step < solver_steps && rho > least_residual * first; step++)

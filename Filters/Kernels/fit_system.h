@@ -31,7 +31,6 @@ typedef struct aqr_fit_triangle
 {
   aqr_index v[3];
   aqr_fit_sample at[AQR_FIT_SAMPLES];
-  float error; /* squared distance, over the area */
 } aqr_fit_triangle;
 
 /* What a vertex has to do with a neighbour: a block of the matrix, xx yy zz xy xz yz. */
@@ -56,13 +55,12 @@ typedef struct aqr_fitter
   aqr_index* corners;   /* 3 * triangle + corner */
   aqr_fit_link* links;  /* per vertex: one more than its corners, as a fan has at most so many neighbours */
   vec3 *move, *residual, *direction, *image, *before;
-  vec3* across;        /* per edge: along the surface and across the edge, scaled by the root of what holds it */
+  vec3* across;        /* per edge: unit, along the surface and across the edge as it was before the first move */
   double* trace;       /* per vertex: of its part of the error */
   double* block;       /* per vertex: its own block of the matrix, as in link */
   double* inverse;     /* of it; 0 where the vertex stays */
   double* product;     /* per vertex: its term of the sum that the solver takes next */
-  double* error;       /* per vertex: of its triangles, before the last move */
-  uint8_t* back;       /* per vertex: the last move was damped or taken back */
+  uint8_t* back;       /* per vertex: the last move was damped */
   aqr_fit_flag* folds; /* per vertex: at a corner that folds */
   aqr_fit_flag folded; /* any does */
   double hold;         /* along the surface */
@@ -70,7 +68,10 @@ typedef struct aqr_fitter
   double keep;         /* of moves that fold */
 } aqr_fitter;
 
-/* Fills `move` from the samples' planes and distances, what holds the vertices, and `hold`. */
+/* Notes how the edges run. */
+aqr_status aqr_fit_note_edges(aqr_context* c, aqr_fitter* f, double at);
+
+/* Fills `move` from the samples' planes and distances, what holds the vertices and edges, and `hold`. */
 aqr_status aqr_fit_solve(aqr_context* c, aqr_fitter* f, double at);
 
 #endif
