@@ -67,14 +67,14 @@ static aqr_status allocate(aqr_context* c, aqr_fitter* f)
   f->image = AQR_NEW(c, vec3, n);
   f->before = AQR_NEW(c, vec3, n);
   f->across = AQR_NEW(c, vec3, m->n_half_edges / 2);
-  f->trace = AQR_NEW(c, double, n);
+  f->share = AQR_NEW(c, double, n);
   f->block = AQR_NEW(c, double, 6 * n);
   f->inverse = AQR_NEW(c, double, 6 * n);
   f->product = AQR_NEW(c, double, n);
   f->back = AQR_NEW0(c, uint8_t, n);
   f->folds = AQR_NEW(c, aqr_fit_flag, n);
   return f->triangles && f->first_corner && f->corners && f->links && f->move && f->residual && f->direction &&
-             f->image && f->before && f->across && f->trace && f->block && f->inverse && f->product && f->back &&
+             f->image && f->before && f->across && f->share && f->block && f->inverse && f->product && f->back &&
              f->folds
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
@@ -94,7 +94,7 @@ static void release(aqr_context* c, aqr_fitter* f)
   AQR_DROP(c, f->image, n);
   AQR_DROP(c, f->before, n);
   AQR_DROP(c, f->across, f->m->n_half_edges / 2);
-  AQR_DROP(c, f->trace, n);
+  AQR_DROP(c, f->share, n);
   AQR_DROP(c, f->block, 6 * n);
   AQR_DROP(c, f->inverse, 6 * n);
   AQR_DROP(c, f->product, n);
@@ -164,6 +164,7 @@ static void measure(void* data, size_t begin, size_t end)
       p[k] = aqr_pm_point(f->m, t->v[k]);
     vec3 ab = v3_sub(p[1], p[0]), ac = v3_sub(p[2], p[0]), cross = v3_cross(ab, ac), normal = v3_unit(cross);
     double area = 0.5 * v3_norm(cross);
+    t->area = (float)area;
     double reach =
       greater(greater(v3_norm2(ab), v3_norm2(ac)), v3_norm2(v3_sub(ab, ac))) * farthest_sample * farthest_sample;
     for (unsigned k = 0; k < AQR_FIT_SAMPLES; k++)

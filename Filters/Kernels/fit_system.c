@@ -9,8 +9,9 @@ enum
 };
 
 static const double least_residual = 1e-3; /* of the first, squared: the solver stops */
-static const double hold_normal = 1e-3;    /* of a vertex in its place, relative to its part of the error */
-static const double hold_edge = 0.02;      /* against turning, relative to its ends' parts of the error */
+static const double hold_normal = 0.02;    /* of a vertex in its place, relative to its share of the error */
+static const double hold_edge = 0.015;     /* against turning, relative to its ends' shares of the error */
+static const double firmest = 10;          /* as often as that are the shortest edges held */
 
 const double aqr_fit_place[AQR_FIT_SAMPLES][3] = { { 0.108103018168070, 0.445948490915965, 0.445948490915965 },
   { 0.445948490915965, 0.108103018168070, 0.445948490915965 },
@@ -40,11 +41,11 @@ static bool invert(const double* a, double* inverse)
   return true;
 }
 
-/* What holds a vertex in its place, times x: a share of its part of the error. */
-static vec3 held(const aqr_fitter* f, const aqr_vertex* v, double trace, vec3 x)
+/* What holds a vertex in its place, times x. */
+static vec3 held(const aqr_fitter* f, const aqr_vertex* v, double share, vec3 x)
 {
   double along = v3_dot(x, v->normal);
-  return v3_scale(v3_madd(v3_scale(x, f->hold), (hold_normal - f->hold) * along, v->normal), trace);
+  return v3_scale(v3_madd(v3_scale(x, f->hold), (hold_normal - f->hold) * along, v->normal), share);
 }
 
 static aqr_fit_link* links_of(const aqr_fitter* f, size_t v)
@@ -73,6 +74,7 @@ static void gather(void* data, size_t begin, size_t end)
     aqr_fit_link* links = links_of(f, v);
     double* a = f->block + 6 * v;
     vec3 right = v3(0, 0, 0);
+    double area = 0;
     size_t n = 0;
     memset(a, 0, 6 * sizeof *a);
     for (size_t i = f->first_corner[v]; i < f->first_corner[v + 1]; i++)
@@ -96,12 +98,13 @@ static void gather(void* data, size_t begin, size_t end)
       }
       for (unsigned d = 0; d < 6; d++)
         a[d] += (double)own[d];
+      area += (double)t->area;
       add_block(links, &n, t->v[k1], one);
       add_block(links, &n, t->v[k2], two);
     }
     if (n <= f->first_corner[v + 1] - f->first_corner[v])
       links[n].to = AQR_NONE;
-    f->trace[v] = a[0] + a[1] + a[2]; /* the part of the error that it stands for */
+    f->share[v] = area / 6; /* the trace of its block, were all samples used */
     f->residual[v] = right;
   }
 }
@@ -125,7 +128,9 @@ aqr_status aqr_fit_note_edges(aqr_context* c, aqr_fitter* f, double at)
 }
 
 /* Edges are held in the direction of their line: their ends may move along the surface together, as lines do that are
- * moved or spaced anew, but what one moves against the other across the edge is drawn back. */
+ * moved or spaced anew, but what one moves against the other across the edge is drawn back. Short edges are held more
+ * firmly, as the same move turns them farther: by the root of how short they are for the area around them, halfway
+ * between a hold on distances and one on angles. */
 static void hold_edges(aqr_fitter* f, size_t v)
 {
   const aqr_polygon_mesh* m = f->m;
@@ -135,7 +140,8 @@ static void hold_edges(aqr_fitter* f, size_t v)
   {
     aqr_index w = aqr_pm_to(m, h);
     vec3 n = f->across[h >> 1], edge = v3_sub(aqr_pm_point(m, w), aqr_pm_point(m, (aqr_index)v));
-    double hold = hold_edge * (f->trace[v] + f->trace[w]);
+    double area = f->share[v] + f->share[w], length2 = v3_norm2(edge);
+    double hold = hold_edge * area * (area < firmest * firmest * length2 ? sqrt(area / length2) : firmest);
     const double product[6] = { n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z };
     aqr_fit_link* to = links_of(f, v);
     while (to->to != w) /* every edge is one of triangles */
@@ -157,9 +163,9 @@ static void begin_rows(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     const aqr_vertex* x = &f->m->vertices[v];
-    double *a = f->block + 6 * v, *inverse = f->inverse + 6 * v, trace = f->trace[v];
+    double *a = f->block + 6 * v, *inverse = f->inverse + 6 * v, share = f->share[v];
     hold_edges(f, v);
-    vec3 e[3] = { held(f, x, trace, v3(1, 0, 0)), held(f, x, trace, v3(0, 1, 0)), held(f, x, trace, v3(0, 0, 1)) };
+    vec3 e[3] = { held(f, x, share, v3(1, 0, 0)), held(f, x, share, v3(0, 1, 0)), held(f, x, share, v3(0, 0, 1)) };
     const double hold[6] = { e[0].x, e[1].y, e[2].z, e[0].y, e[0].z, e[1].z };
     for (unsigned d = 0; d < 6; d++)
       a[d] += hold[d];

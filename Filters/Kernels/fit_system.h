@@ -31,6 +31,7 @@ typedef struct aqr_fit_triangle
 {
   aqr_index v[3];
   aqr_fit_sample at[AQR_FIT_SAMPLES];
+  float area;
 } aqr_fit_triangle;
 
 /* What a vertex has to do with a neighbour: a block of the matrix, xx yy zz xy xz yz. */
@@ -56,7 +57,7 @@ typedef struct aqr_fitter
   aqr_fit_link* links;  /* per vertex: one more than its corners, as a fan has at most so many neighbours */
   vec3 *move, *residual, *direction, *image, *before;
   vec3* across;        /* per edge: unit, along the surface and across the edge as it was before the first move */
-  double* trace;       /* per vertex: of its part of the error */
+  double* share;       /* per vertex: of the error, by area, so that it is held as firmly where few samples are used */
   double* block;       /* per vertex: its own block of the matrix, as in link */
   double* inverse;     /* of it; 0 where the vertex stays */
   double* product;     /* per vertex: its term of the sum that the solver takes next */

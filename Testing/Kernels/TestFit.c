@@ -168,32 +168,47 @@ static vec3 edge_of(const aqr_polygon_mesh* m, size_t e)
   return v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), aqr_pm_point(m, aqr_pm_from(m, h)));
 }
 
-/* The error says that lines askew to the curvature should turn, more of it in every round: 2.8 degrees on average where
- * nothing holds the edges, 0.7 where each round holds them as the one before has left them. */
-AQR_TEST(edges_keep_the_direction_of_their_lines_in_all_rounds)
+/* Degrees by which the fit turns the edges of a lattice, on average, of those no longer than `longest`. */
+static double degrees_turned(unsigned columns, unsigned rows, double longest)
 {
   aqr_context c = { 0 };
   aqr_polygon_mesh m = { 0 };
   aqr_surface s;
   CHECK(surface_of_grid(&c, 200, 60, false, on_waves, &s));
-  CHECK(grid_of_quads(&c, 6, 6, false, askew_on_waves, &m));
+  CHECK(grid_of_quads(&c, columns, rows, false, askew_on_waves, &m));
   set_places(&s, &m);
   size_t n = m.n_half_edges / 2;
   vec3* before = malloc(n * sizeof *before);
   for (size_t e = 0; e < n; e++)
     before[e] = edge_of(&m, e);
   CHECK(aqr_fit(&c, &s, NULL, &m) == AQR_OK);
-  double turned = 0;
+  double turned = 0, count = 0;
   for (size_t e = 0; e < n; e++)
   {
     vec3 a = before[e], b = edge_of(&m, e);
-    turned += fabs(atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y)) / (double)n;
+    if (v3_norm(a) > longest)
+      continue;
+    turned += fabs(atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
+    count++;
   }
-  CHECK_BELOW(turned * 180 / 3.14159265358979324, 0.4);
   free(before);
   aqr_polygon_mesh_free(&c, &m);
   free_surface(&s);
-  CHECK(c.bytes == 0);
+  CHECK(c.bytes == 0 && count > 0);
+  return turned / count * 180 / 3.14159265358979324;
+}
+
+/* The error says that lines askew to the curvature should turn, more of it in every round: 2.9 degrees on average where
+ * nothing holds the edges, 0.6 where each round holds them as the one before has left them. */
+AQR_TEST(edges_keep_the_direction_of_their_lines_in_all_rounds)
+{
+  CHECK_BELOW(degrees_turned(7, 7, INFINITY), 0.4);
+}
+
+/* 2.1 degrees where they are held as firmly as long ones. */
+AQR_TEST(short_edges_are_held_more_firmly_than_long_ones)
+{
+  CHECK_BELOW(degrees_turned(30, 5, 0.05), 1);
 }
 
 static aqr_vertex on_dome(double s, double t)
