@@ -9,7 +9,7 @@ enum
 };
 
 static const double least_residual = 1e-3; /* of the first, squared: the solver stops */
-static const double hold_normal = 0.02;    /* of a vertex in its place, relative to its share of the error */
+static const double hold_normal = 0.1;     /* of a vertex in its place, relative to its share of the error */
 static const double hold_edge = 0.015;     /* against turning, relative to its ends' shares of the error */
 static const double firmest = 10;          /* as often as that are the shortest edges held */
 

@@ -161,4 +161,21 @@ AQR_TEST(one_point_does_not_speak_for_a_component_without_lines)
   CHECK(points[1] < 2 * points[0]);
 }
 
+/* Round after round the fit took a vertex of six farther off, as hardly any of its samples had the surface below them.
+ */
+AQR_TEST(no_vertex_of_a_handful_is_fitted_far_off)
+{
+  shape m = shape_ellipsoid(4, 0, 0, v3(1, 0.6, 0.4));
+  aqr_input input = shape_input(&m);
+  aqr_options o = aqr_default_options();
+  o.tolerance = 0.1;
+  o.largest_spacing = 1;
+  o.curvature_radius = 0;
+  o.smoothing_iterations = 0;
+  o.feature_lines = 0;
+  o.convex_partition = 0;
+  CHECK(!fault_of(&input, &o));
+  shape_free(&m);
+}
+
 AQR_TEST_MAIN
