@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 PROGRAM, NO_NETWORK = sys.argv[1:3]
 
@@ -230,6 +231,25 @@ class Program(unittest.TestCase):
                 f.write(data)
             self.assertEqual(self.run_program(self.path(name), self.path("out.obj")).returncode, 0, name)
         return files
+
+    def test_names_of_materials_do_not_break_the_output(self):
+        materials = ["R&D", "a<b", 'a"b', "Terraind\xe6k", "C:\\m", "\u6750\u6599"]
+        encoded = [m.encode("latin-1" if m.startswith("Terr") else "utf-8") for m in materials]
+        corners = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n"
+        faces = [b"1/1 3/3 2/2", b"1/1 2/2 4/3", b"2/1 3/2 4/3", b"1/1 4/2 3/3"]
+        with open(self.path("in.obj"), "wb") as f:
+            f.write(b"mtllib x.mtl\n" + corners)
+            for i, name in enumerate(encoded):
+                f.write(b"usemtl " + name + b"\nf " + faces[i % 4] + b"\n")
+        run = self.run_program(self.path("in.obj"), self.path("named.vtp"), "--points", "200")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        with open(self.path("named.vtp"), "rb") as f:
+            head = f.read().split(b"<AppendedData")[0]
+        names = [array.get("Name") for array in xml.etree.ElementTree.fromstring(head + b"</VTKFile>").iter("DataArray")]
+        for name in materials:
+            self.assertIn(name, names)
+        again = self.run_program(self.path("named.vtp"), self.path("again.vtp"), "--points", "200")
+        self.assertEqual(again.returncode, 0, again.stderr)
 
     def expect_refusal(self, name, data):
         with open(self.path(name), "wb") as f:
