@@ -78,6 +78,35 @@ void Digest(vtkDataArray* array, SurfaceDigest& digest)
       array->GetVoidPointer(0), static_cast<size_t>(head[1]) * static_cast<size_t>(array->GetDataTypeSize()), digest);
   }
 }
+
+//------------------------------------------------------------------------------
+// Adds fans for polygons that VTK has no triangles for, as they have no area, cross or repeat themselves: of a fan the
+// kernels keep what makes a surface, and say what they drop, where the polygon would be a hole that nothing speaks of.
+void AddFans(vtkCellArray* polygons, vtkIdType firstCell, vtkCellArray* triangles, std::vector<vtkIdType>& cells)
+{
+  std::vector<bool> isThere(static_cast<size_t>(polygons->GetNumberOfCells()), false);
+  for (vtkIdType cell : cells)
+  {
+    if (cell - firstCell < polygons->GetNumberOfCells())
+    {
+      isThere[static_cast<size_t>(cell - firstCell)] = true;
+    }
+  }
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType i = 0; i < polygons->GetNumberOfCells(); ++i)
+  {
+    if (isThere[static_cast<size_t>(i)])
+    {
+      continue;
+    }
+    polygons->GetCellAtId(i, corners);
+    for (vtkIdType k = 2; k < corners->GetNumberOfIds(); ++k)
+    {
+      triangles->InsertNextCell({ corners->GetId(0), corners->GetId(k - 1), corners->GetId(k) });
+      cells.push_back(firstCell + i);
+    }
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -161,6 +190,7 @@ aqr_status InputSurface::Give(vtkPolyData* input, const std::vector<int64_t>& lo
     polys = triangulate->GetOutput()->GetPolys();
     auto* source = vtkIdTypeArray::SafeDownCast(triangulate->GetOutput()->GetCellData()->GetArray("cell"));
     this->Cells.assign(source->GetPointer(0), source->GetPointer(0) + source->GetNumberOfValues());
+    AddFans(input->GetPolys(), this->FirstCell, polys, this->Cells);
   }
 
   aqr_input view = {};

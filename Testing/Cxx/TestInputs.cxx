@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fails when polygons, strips, 32-bit cells or integer points are read otherwise than triangles, when
-// vertices and lines shift the cell ids, and when a repair goes unsaid.
+// vertices and lines shift the cell ids, when a polygon that repeats itself leaves a hole, and when a repair goes
+// unsaid.
 #include "RemesherTesting.h"
 
 #include "vtkStripper.h"
@@ -59,6 +60,23 @@ int TestInputs(int, char*[])
   double range[2];
   fromQuads->GetCellData()->GetArray("SourceCellId")->GetRange(range);
   CHECK(range[0] >= 0 && range[1] < static_cast<double>(quads->GetNumberOfCells()));
+
+  // A polygon that goes around its four corners twice has no triangles for VTK.
+  vtkNew<vtkPolyData> twice;
+  vtkNew<vtkCellArray> around;
+  vtkNew<vtkIdList> ring;
+  around->DeepCopy(quads->GetPolys());
+  around->GetCellAtId(7, ring);
+  for (vtkIdType k = 0; k < 4; ++k)
+  {
+    ring->InsertNextId(ring->GetId(k));
+  }
+  const vtkIdType nothing[4] = { 0, 0, 0, 0 };
+  around->ReplaceCellAtId(7, 4, nothing);
+  around->InsertNextCell(ring);
+  twice->SetPoints(quads->GetPoints());
+  twice->SetPolys(around);
+  CHECK(Alike(Remeshed(twice), expected));
 
   vtkNew<vtkStripper> strip;
   strip->SetInputData(torus);
