@@ -243,13 +243,27 @@ class Program(unittest.TestCase):
                 f.write(b"usemtl " + name + b"\nf " + faces[i % 4] + b"\n")
         run = self.run_program(self.path("in.obj"), self.path("named.vtp"), "--points", "200")
         self.assertEqual(run.returncode, 0, run.stderr)
-        with open(self.path("named.vtp"), "rb") as f:
-            head = f.read().split(b"<AppendedData")[0]
-        names = [array.get("Name") for array in xml.etree.ElementTree.fromstring(head + b"</VTKFile>").iter("DataArray")]
+        names = self.names_in("named.vtp")
         for name in materials:
             self.assertIn(name, names)
-        again = self.run_program(self.path("named.vtp"), self.path("again.vtp"), "--points", "200")
-        self.assertEqual(again.returncode, 0, again.stderr)
+        # Outputs share the arrays of the whole surface.
+        with open(self.path("named.vtp"), "rb") as f:
+            data = f.read()
+        with open(self.path("shared.vtp"), "wb") as f:
+            f.write(data.replace(b'"MaterialNames"', b'"R&#38;M"'))
+        files = {option: option[2:] + ".vtp" for option in ("--directions", "--confidence", "--lines")}
+        options = [word for option, file in files.items() for word in (option, self.path(file))]
+        run = self.run_program(self.path("shared.vtp"), self.path("again.vtp"), "--points", "200", *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for file in ["again.vtp", *files.values()]:
+            self.assertIn("R&M", self.names_in(file), file)
+        self.assertEqual(self.names_in("again.vtp") - names, {"R&M"})
+
+    def names_in(self, file):
+        """Of the arrays of a .vtp file, as XML has them."""
+        with open(self.path(file), "rb") as f:
+            head = f.read().split(b"<AppendedData")[0]
+        return {element.get("Name") for element in xml.etree.ElementTree.fromstring(head + b"</VTKFile>").iter()}
 
     def expect_refusal(self, name, data):
         with open(self.path(name), "wb") as f:

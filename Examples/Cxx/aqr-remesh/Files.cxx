@@ -5,7 +5,6 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
@@ -15,7 +14,6 @@
 #include "vtkOutputWindow.h"
 #include "vtkPLYReader.h"
 #include "vtkPLYWriter.h"
-#include "vtkPointData.h"
 #include "vtkPolyDataReader.h"
 #include "vtkPolyDataWriter.h"
 #include "vtkSTLReader.h"
@@ -33,6 +31,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 namespace fs = std::filesystem;
@@ -246,15 +245,39 @@ std::string XmlName(const std::string& name)
 
 //------------------------------------------------------------------------------
 // VTK writes the names of arrays, which in .obj files are those of materials, into XML as they are: "R&D" makes a file
-// that nothing reads.
-void MakeXmlNames(vtkFieldData* data)
+// that nothing reads. The next output may share the arrays, so that they get their names back.
+class XmlNames
 {
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+public:
+  explicit XmlNames(vtkPolyData* surface)
   {
-    vtkAbstractArray* array = data->GetAbstractArray(i);
-    array->SetName(XmlName(array->GetName() ? array->GetName() : "").c_str());
+    for (int type : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD })
+    {
+      vtkFieldData* data = surface->GetAttributesAsFieldData(type);
+      for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+      {
+        vtkAbstractArray* array = data->GetAbstractArray(i);
+        const std::string name = array->GetName() ? array->GetName() : "";
+        if (this->Names.emplace(array, name).second)
+        {
+          array->SetName(XmlName(name).c_str());
+        }
+      }
+    }
   }
-}
+  ~XmlNames()
+  {
+    for (const auto& [array, name] : this->Names)
+    {
+      array->SetName(name.c_str());
+    }
+  }
+  XmlNames(const XmlNames&) = delete;
+  XmlNames& operator=(const XmlNames&) = delete;
+
+private:
+  std::map<vtkAbstractArray*, std::string> Names;
+};
 
 //------------------------------------------------------------------------------
 bool WriteByExtension(const std::string& extension, const std::string& file, vtkPolyData* surface)
@@ -265,9 +288,7 @@ bool WriteByExtension(const std::string& extension, const std::string& file, vtk
     writer->SetDataModeToAppended();
     writer->EncodeAppendedDataOff();
     writer->SetCompressorTypeToNone();
-    MakeXmlNames(surface->GetPointData());
-    MakeXmlNames(surface->GetCellData());
-    MakeXmlNames(surface->GetFieldData());
+    const XmlNames names(surface);
     return Write(writer.Get(), file, surface);
   }
   if (extension == ".vtk")
