@@ -69,7 +69,7 @@ static aqr_complex in_frame(aqr_frame at, vec3 d)
 }
 
 /* How far the principal cross is to be believed: coherent around the point, distinct in the ratio of
- * the curvatures, and not just the noise of a flat place. */
+ * the curvatures, and not just the noise of a flat place, or of a sphere. */
 static double trust(const job* j, size_t v)
 {
   const aqr_field* f = j->field;
@@ -79,7 +79,8 @@ static double trust(const job* j, size_t v)
   double ratio = fmin(strength / all / full_anisotropy, 1);
   double coherent = fmax(0, ((double)f->point_confidence[v] - j->min_cosine) / (1 - j->min_cosine));
   coherent = 1 - (1 - coherent) * (1 - coherent);
-  return coherent * ratio * ratio * (3 - 2 * ratio) * strength / (strength + half_strength);
+  double noise = (double)f->noise[v], sure = strength < 2 * noise ? fmax(0, strength / noise - 1) : 1;
+  return coherent * sure * ratio * ratio * (3 - 2 * ratio) * strength / (strength + half_strength);
 }
 
 /* The edge of border or seam that leaves v, as seen in the frame of `at`. */

@@ -60,10 +60,11 @@ typedef struct job
   aqr_index* centres; /* points with a ball of their own */
   size_t n_centres;
   uint8_t* covered; /* per point: a point_state */
-  double* weight;   /* per point: of the balls blended into t */
+  double* weight;   /* per point: of the balls blended into t and noise */
   size_t inside_bytes;
   slot slot[slots];
   float* t;
+  float* noise;
   double* normal;
 } job;
 
@@ -169,6 +170,8 @@ typedef struct ball
   double radius, radius2;
   double area;
   double sum[6];
+  double sizes; /* of what the points inside carry, added up */
+  size_t points;
 } ball;
 
 static bool holds(const ball* b, vec3 p)
@@ -307,6 +310,11 @@ static bool visit_some(const job* j, slot* k, size_t* n, ball* b, aqr_index firs
   return fits;
 }
 
+static double size2(const double* t)
+{
+  return t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
+}
+
 /* Grows the ball from its centre over edges; false when it does not fit into the queue. */
 static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
 {
@@ -318,6 +326,7 @@ static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
     b->area += u->area;
     for (int c = 0; c < 6; c++)
       b->sum[c] += u->sum[c];
+    b->sizes += sqrt(size2(u->sum));
     aqr_index first = j->s->fan[k->queue[i]];
     double clear = b->radius - u->longest;
     if (clear > 0 && v3_norm2(v3_sub(aqr_point(j->s, k->queue[i]), b->centre)) < clear * clear)
@@ -328,6 +337,7 @@ static bool grow(const job* j, slot* k, aqr_index centre, ball* b)
   for (size_t i = 0; i < n; i++)
     k->inside[k->queue[i] >> 3] = 0;
   k->visited += n;
+  b->points = n;
   return fits;
 }
 
@@ -341,6 +351,16 @@ static void store_mean(float* t, const ball* b)
   }
   if (!finite)
     memset(t, 0, 6 * sizeof *t);
+}
+
+/* The curvature that the ball would show were its surface flat and its points off by noise. Moving a point inside bends
+ * edges one way and the others back, so that of n points only those near the sphere count, some sqrt(n), each with the
+ * size of what a point carries: n^(1/4) of the n sizes in the sum. What the sum does show is no noise. */
+static float noise_of(const ball* b)
+{
+  double n = sqrt((double)b->points), unseen = b->sizes * b->sizes - size2(b->sum);
+  double noise = unseen > 0 && b->area > 0 ? sqrt(unseen) / (b->area * n * sqrt(n)) : 0;
+  return isfinite((float)noise) ? (float)noise : 0;
 }
 
 /* The points within a distance of v, reached over edges, into the queue; false when they do not fit. */
@@ -397,6 +417,7 @@ static void run_slots(void* data, size_t begin, size_t end)
       if (!grow(j, k, v, &b))
         break;
       store_mean(j->t + 6 * (size_t)v, &b);
+      j->noise[v] = noise_of(&b);
       if (!list_near(j, k, v))
         break;
     }
@@ -439,6 +460,7 @@ static void blend(job* j, const slot* k)
       j->weight[w] += x * x;
       for (size_t a = 0; a < 6; a++)
         j->t[6 * (size_t)w + a] += (float)(x * x) * j->t[6 * (size_t)v + a];
+      j->noise[w] += (float)(x * x) * j->noise[v];
     }
   }
 }
@@ -447,8 +469,13 @@ static void divide(void* data, size_t begin, size_t end)
 {
   job* j = data;
   for (size_t v = begin; v < end; v++)
-    for (size_t a = 0; a < 6 && j->covered[v] == blended; a++)
+  {
+    if (j->covered[v] != blended)
+      continue;
+    for (size_t a = 0; a < 6; a++)
       j->t[6 * v + a] /= (float)j->weight[v];
+    j->noise[v] /= (float)j->weight[v];
+  }
 }
 
 /* Fills the balls and blends them in their order. They differ in size by orders of magnitude, so the length of a batch
@@ -562,6 +589,7 @@ static bool allocate_job(aqr_context* c, job* j)
 void aqr_tensors_free(aqr_context* c, const aqr_surface* s, aqr_tensors* tensors)
 {
   AQR_DROP(c, tensors->t, 6 * s->n_points);
+  AQR_DROP(c, tensors->noise, s->n_points);
   AQR_DROP(c, tensors->normal, 3 * s->n_points);
 }
 
@@ -571,8 +599,9 @@ aqr_status aqr_curvature_tensors(aqr_context* c, const aqr_surface* s, double ra
   size_t n = s->n_points;
   job j = { .s = s, .radius = radius };
   tensors->t = j.t = AQR_NEW0(c, float, 6 * n);
+  tensors->noise = j.noise = AQR_NEW0(c, float, n);
   tensors->normal = j.normal = AQR_NEW(c, double, 3 * n);
-  AQR_REQUIRE(tensors->t && tensors->normal && allocate_job(c, &j), AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(tensors->t && tensors->noise && tensors->normal && allocate_job(c, &j), AQR_OUT_OF_MEMORY);
 
   AQR_TRY(aqr_parallel(c, 3 * s->n_faces, measure_angles, &j, 0, 0.1));
   AQR_TRY(aqr_parallel(c, s->n_faces, measure_areas, &j, 0.1, 0.1));

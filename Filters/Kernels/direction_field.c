@@ -221,6 +221,7 @@ void aqr_field_free(aqr_context* c, const aqr_surface* s, aqr_field* field)
 {
   size_t n = s->n_points;
   field->normal = NULL;
+  field->noise = NULL;
   AQR_DROP(c, field->direction, n);
   AQR_DROP(c, field->k_min, n);
   AQR_DROP(c, field->k_max, n);
@@ -238,6 +239,7 @@ aqr_status aqr_direction_field(
   job j = { .s = s, .around = &around, .field = field };
   AQR_REQUIRE(allocate(c, s, field), AQR_OUT_OF_MEMORY);
   field->normal = tensors->normal;
+  field->noise = tensors->noise;
   AQR_TRY(aqr_neighbours_build(c, s, &around));
   AQR_TRY(smooth_tensors(c, &j, tensors, iterations));
   AQR_TRY(aqr_cross_field(c, s, &around, min_cosine, field));

@@ -11,6 +11,7 @@
 typedef struct aqr_field
 {
   const double* normal; /* those of the tensors, which outlive the field */
+  const float* noise;   /* likewise */
   aqr_rotor* direction; /* per point: the minimum direction in the frame of its normal */
   float* k_min;         /* per point, signed, k_min <= k_max, in units of the scaled surface; positive on a
                            sphere */
@@ -55,6 +56,8 @@ typedef struct aqr_tensors
   float* t;       /* 6 per point: normal-cycle tensor averaged over the ball, eigenvalues = curvatures,
                      with the eigenvectors of the two tangent ones swapped as DESIGN.md says (minimum
                      direction carries k_max) */
+  float* noise;   /* per point, >= 0: the curvature that noise feigns: on a plane with noise half the difference of the
+                     two curvatures is below it in 98 balls of 100; 0 where all that bends in the ball agrees */
   double* normal; /* 3 per point, unit, averaged over the sector's faces only */
 } aqr_tensors;
 

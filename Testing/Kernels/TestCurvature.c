@@ -142,6 +142,58 @@ AQR_TEST(sign_turned)
   finish(&e, &m);
 }
 
+/* The share of points whose two curvatures differ by no more than noise explains. */
+static double noise_share(shape m, double radius)
+{
+  estimate e = estimate_of(&m, radius);
+  double share = 0;
+  for (aqr_index v = 0; v < e.s.n_points; v++)
+  {
+    shape_curvature k = estimated(&e, v);
+    share += k.k_max - k.k_min < 2 * (double)e.t.noise[v];
+  }
+  share /= (double)e.s.n_points;
+  finish(&e, &m);
+  return share;
+}
+
+static vec3 place_on_sheet(double u, double v)
+{
+  return v3(u, v, 0);
+}
+
+static shape with_noise(shape m, double noise)
+{
+  unsigned state = 6;
+  for (size_t i = 0; i < 3 * m.n_points; i++)
+    m.points[i] += noise * (2 * shape_random(&state) - 1);
+  return m;
+}
+
+AQR_TEST(noise_is_taken_for_curvature)
+{
+  const double radius[] = { 0, 0.03, 0.08 };
+  for (int i = 0; i < 3; i++)
+  {
+    CHECK_BELOW(
+      0.95, noise_share(with_noise(shape_grid(60, 60, false, false, 0.3, 5, place_on_sheet), 1e-3), radius[i]));
+    CHECK_BELOW(
+      0.95, noise_share(with_noise(shape_grid(60, 60, false, false, 0.3, 5, place_on_sheet), 3e-3), radius[i]));
+  }
+}
+
+AQR_TEST(curvature_is_taken_for_noise)
+{
+  const double radius[] = { 0, 0.03, 0.08 };
+  for (int i = 0; i < 3; i++)
+  {
+    CHECK_BELOW(noise_share(shape_cylinder(50, 6), radius[i]), 0.01);
+    CHECK_BELOW(noise_share(shape_torus(32, 6), radius[i]), 0.01);
+    CHECK_BELOW(noise_share(shape_catenoid(32, 6), radius[i]), 0.01);
+  }
+  CHECK_BELOW(noise_share(with_noise(shape_cylinder(50, 6), 2e-4), 0.05), 0.01);
+}
+
 static vec3 place_on_inner_cylinder(double u, double v)
 {
   return v3(0.29 * cos(shape_turn * u), -0.29 * sin(shape_turn * u), v);

@@ -242,6 +242,28 @@ AQR_TEST(cross_ignores_border_of_flat_sheet)
   finish(&e);
 }
 
+static shape noisy_sheet(double noise)
+{
+  shape m = shape_grid(60, 60, false, false, 0.3, 10, place_on_sheet);
+  unsigned state = 6;
+  for (size_t v = 0; v < m.n_points; v++)
+    m.points[3 * v + 2] = noise / 60 * (2 * shape_random(&state) - 1);
+  return m;
+}
+
+AQR_TEST(noise_of_flat_sheet_turns_cross)
+{
+  for (int i = 0; i < 2; i++)
+  {
+    model e = with_field(noisy_sheet(i ? 0.3 : 0.1), 0.05, 5);
+    double mean = 0;
+    for (size_t v = 0; v < e.s.n_points; v++)
+      mean += off_cross(aqr_cross(&e.f, v), v3(1, 0, 0)) / (double)e.s.n_points;
+    CHECK_BELOW(mean, 5);
+    finish(&e);
+  }
+}
+
 static vec3 place_on_ring(double u, double v)
 {
   return v3((1 + v) * cos(shape_turn * u), (1 + v) * sin(shape_turn * u), 0);
