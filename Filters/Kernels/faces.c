@@ -13,6 +13,7 @@ enum
 };
 
 static const double near_intersection = 0.2; /* of the local spacing: such vertices are merged (paper 5) */
+static const double one_place = 1e-3;        /* of the local spacing: vertices no farther apart are at one place */
 static const double tip_cosine = 0.7071;     /* of the angle between two edges that lead to a tip and back */
 static const double weld_reach = 0.75;       /* of the local spacing: T-joints as near may become one crossing */
 static const double least_gain = 0.05;       /* an operation is worth its while */
@@ -125,20 +126,24 @@ static bool keeps_chain(const aqr_polygon_mesh* m, aqr_index h)
 
 static bool contract_if(aqr_polygon_mesh* m, aqr_index h, double least)
 {
-  if (!aqr_can_contract(m, h) || !keeps_chain(m, h))
+  if (!aqr_can_contract(m, h))
     return false;
   aqr_vertex middle = meeting(m, h);
+  if (edge_length(m, h) <= one_place * local_size(m, h))
+    return aqr_contract(m, h, &middle) != AQR_NONE;
+  if (!keeps_chain(m, h))
+    return false;
   return contraction_gain(m, h, &middle) >= least && aqr_contract(m, h, &middle) != AQR_NONE;
 }
 
 /* Three lines that nearly meet in one point make a tiny triangle: its vertices become one (paper 5). */
-static bool merge_near_intersections(aqr_context* c, aqr_polygon_mesh* m)
+static bool merge_nearer(aqr_context* c, aqr_polygon_mesh* m, double reach, double at)
 {
   for (aqr_index h = 0; h < m->n_half_edges; h += 2)
   {
-    if (h % 65536 == 0 && !aqr_step(c, 0.2))
+    if (h % 65536 == 0 && !aqr_step(c, at))
       return false;
-    if (aqr_pm_edge_lives(m, h) && edge_length(m, h) < near_intersection * local_size(m, h))
+    if (aqr_pm_edge_lives(m, h) && edge_length(m, h) <= reach * local_size(m, h))
       contract_if(m, h, -merge_allowance);
   }
   return true;
@@ -374,7 +379,7 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   AQR_TRY(aqr_pm_verify(c, m, false));
   AQR_TRY(aqr_tidy(c, m));
   AQR_TRY(aqr_regularize(c, m));
-  AQR_REQUIRE(merge_near_intersections(c, m), AQR_CANCELLED);
+  AQR_REQUIRE(merge_nearer(c, m, near_intersection, 0.2), AQR_CANCELLED);
   for (unsigned round = 1; round <= rounds; round++) /* near partners first, then farther ones */
   {
     AQR_TRY(aqr_mark(c, m, m->n_faces, is_odd, NULL, &marks));
@@ -388,6 +393,8 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   AQR_TRY(aqr_regularize(c, m));
   if (options->tips)
     AQR_TRY(aqr_tips_raise(c, options->tips, m));
+  AQR_REQUIRE(merge_nearer(c, m, one_place, 0.9), AQR_CANCELLED);
+  AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(aqr_step(c, 0.95), AQR_CANCELLED);
   AQR_TRY(aqr_pm_verify(c, m, true));
   AQR_REQUIRE(aqr_step(c, 0.98), AQR_CANCELLED);

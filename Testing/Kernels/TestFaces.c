@@ -230,6 +230,22 @@ AQR_TEST(lines_that_end_towards_each_other_are_joined)
 }
 
 /* The same with a crease across the gap, where neither line has a vertex. */
+/* Makes a crease of the edges of a sheet along y. */
+static void draw_crease(aqr_polygon_mesh* m, double y)
+{
+  for (aqr_index h = 0; h < m->n_half_edges; h += 2)
+  {
+    if (!aqr_pm_edge_lives(m, h))
+      continue;
+    aqr_vertex* end[2] = { &m->vertices[aqr_pm_from(m, h)], &m->vertices[aqr_pm_to(m, h)] };
+    if (fabs(end[0]->position.y - y) > 1e-9 || fabs(end[1]->position.y - y) > 1e-9)
+      continue;
+    m->edge_type[h >> 1] = AQR_LINE_FEATURE;
+    for (unsigned i = 0; i < 2; i++)
+      end[i]->kind = end[i]->kind == AQR_VERTEX_BOUNDARY ? AQR_VERTEX_CORNER : AQR_VERTEX_FEATURE;
+  }
+}
+
 AQR_TEST(lines_that_end_towards_each_other_are_joined_across_a_crease)
 {
   aqr_context c = { 0 };
@@ -243,17 +259,7 @@ AQR_TEST(lines_that_end_towards_each_other_are_joined_across_a_crease)
     if (fabs(p.y - 0.5) < 1e-9 && fabs(p.x - 0.5) < 1e-9)
       CHECK(aqr_pm_join_edges(&m, v));
   }
-  for (aqr_index h = 0; h < m.n_half_edges; h += 2)
-  {
-    if (!aqr_pm_edge_lives(&m, h))
-      continue;
-    aqr_vertex *a = &m.vertices[aqr_pm_from(&m, h)], *b = &m.vertices[aqr_pm_to(&m, h)];
-    if (fabs(a->position.y - 0.5) > 1e-9 || fabs(b->position.y - 0.5) > 1e-9)
-      continue;
-    m.edge_type[h >> 1] = AQR_LINE_FEATURE;
-    a->kind = a->kind == AQR_VERTEX_INTERIOR ? AQR_VERTEX_FEATURE : AQR_VERTEX_CORNER;
-    b->kind = b->kind == AQR_VERTEX_INTERIOR ? AQR_VERTEX_FEATURE : AQR_VERTEX_CORNER;
-  }
+  draw_crease(&m, 0.5);
   CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
   CHECK(count_quads(&m) == 100 && m.n_faces == 100 && m.n_vertices == 121);
   for (aqr_index h = 0; h < m.n_half_edges; h += 2)
@@ -274,31 +280,47 @@ AQR_TEST(a_line_that_ends_short_of_the_border_reaches_it)
   aqr_polygon_mesh_free(&c, &m);
 }
 
-/* Two lines that end on a third from both sides, a tenth of a cell apart. */
+/* On a sheet of 7 by 7 quads a line from either side ends on a third, `apart` from each other. */
+static void face_t_joints(aqr_context* c, aqr_polygon_mesh* m, double apart)
+{
+  aqr_index v = AQR_NONE, a, h;
+  for (aqr_index i = 0; i < m->n_vertices; i++)
+    if (fabs(m->vertices[i].position.x - 3.0 / 7) < 1e-9 && fabs(m->vertices[i].position.y - 3.0 / 7) < 1e-9)
+      v = i;
+  h = m->vertices[v].out;
+  for (unsigned k = 0; k < 4 && aqr_pm_point(m, aqr_pm_to(m, h)).x < 3.0 / 7 + 0.1; k++)
+    h = aqr_pm_next_around(m, h);
+  aqr_vertex beside = m->vertices[v];
+  beside.position.x += apart;
+  CHECK(aqr_pm_split_edge(c, m, h, &beside, &a) == AQR_OK);
+  /* the line that came from below at v now ends at a */
+  aqr_index up = aqr_pm_prev(m, h) ^ 1, top = aqr_pm_next(m, up);
+  aqr_index onto = aqr_pm_next(m, h);
+  CHECK(aqr_pm_remove_edge(m, up));
+  CHECK(aqr_pm_split_face(c, m, onto, top, AQR_LINE_MIN) == AQR_OK);
+  CHECK(count_quads(m) == 47);
+}
+
 AQR_TEST(t_joints_that_face_each_other_become_one_crossing)
 {
   aqr_context c = { 0 };
   aqr_polygon_mesh m = { 0 };
   CHECK(sheet_of_quads(&c, 7, 7, &m));
-  /* move the vertex in the middle a little aside and give half of its edges to a new one */
-  aqr_index v = AQR_NONE, a, h;
-  for (aqr_index i = 0; i < m.n_vertices; i++)
-    if (fabs(m.vertices[i].position.x - 3.0 / 7) < 1e-9 && fabs(m.vertices[i].position.y - 3.0 / 7) < 1e-9)
-      v = i;
-  h = m.vertices[v].out;
-  for (unsigned k = 0; k < 4 && aqr_pm_point(&m, aqr_pm_to(&m, h)).x < 3.0 / 7 + 0.1; k++)
-    h = aqr_pm_next_around(&m, h);
-  aqr_vertex beside = m.vertices[v];
-  beside.position.x += 0.05;
-  CHECK(aqr_pm_split_edge(&c, &m, h, &beside, &a) == AQR_OK);
-  /* the line that came from below at v now ends at a */
-  aqr_index up = aqr_pm_prev(&m, h) ^ 1, top = aqr_pm_next(&m, up);
-  aqr_index onto = aqr_pm_next(&m, h);
-  CHECK(aqr_pm_remove_edge(&m, up));
-  CHECK(aqr_pm_split_face(&c, &m, onto, top, AQR_LINE_MIN) == AQR_OK);
-  CHECK(count_quads(&m) == 47);
+  face_t_joints(&c, &m, 0.05);
   CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
   CHECK(count_quads(&m) == 49 && m.n_faces == 49);
+  aqr_polygon_mesh_free(&c, &m);
+}
+
+AQR_TEST(lines_that_end_at_one_place_of_a_crease_leave_an_edge_without_length)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(sheet_of_quads(&c, 7, 7, &m));
+  draw_crease(&m, 3.0 / 7);
+  face_t_joints(&c, &m, 0);
+  CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+  CHECK(count_quads(&m) == 49 && m.n_faces == 49 && m.n_vertices == 64);
   aqr_polygon_mesh_free(&c, &m);
 }
 
