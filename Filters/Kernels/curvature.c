@@ -358,8 +358,8 @@ static void store_mean(float* t, const ball* b)
  * size of what a point carries: n^(1/4) of the n sizes in the sum. What the sum does show is no noise. */
 static float noise_of(const ball* b)
 {
-  double n = sqrt((double)b->points), unseen = b->sizes * b->sizes - size2(b->sum);
-  double noise = unseen > 0 && b->area > 0 ? sqrt(unseen) / (b->area * n * sqrt(n)) : 0;
+  double root = sqrt((double)b->points), unseen = b->sizes * b->sizes - size2(b->sum);
+  double noise = unseen > 0 && b->area > 0 ? sqrt(unseen) / (b->area * root * sqrt(root)) : 0;
   return isfinite((float)noise) ? (float)noise : 0;
 }
 
