@@ -110,15 +110,14 @@ void AddFans(vtkCellArray* polygons, vtkIdType firstCell, vtkCellArray* triangle
 }
 
 //------------------------------------------------------------------------------
-vtkMTimeType GeometryTime(vtkPolyData* surface)
+SurfaceTimes TimesOf(vtkPolyData* surface)
 {
-  vtkMTimeType time = std::max(surface->GetPoints()->GetMTime(), surface->GetPoints()->GetData()->GetMTime());
-  for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
-  {
-    time = std::max(
-      { time, cells->GetMTime(), cells->GetConnectivityArray()->GetMTime(), cells->GetOffsetsArray()->GetMTime() });
-  }
-  return time;
+  vtkPoints* points = surface->GetPoints();
+  vtkCellArray *polys = surface->GetPolys(), *strips = surface->GetStrips();
+  return { points->GetMTime(), points->GetData()->GetMTime(), polys->GetMTime(),
+    polys->GetConnectivityArray()->GetMTime(), polys->GetOffsetsArray()->GetMTime(), strips->GetMTime(),
+    strips->GetConnectivityArray()->GetMTime(), strips->GetOffsetsArray()->GetMTime(),
+    static_cast<vtkMTimeType>(surface->GetNumberOfVerts() + surface->GetNumberOfLines()) };
 }
 
 //------------------------------------------------------------------------------

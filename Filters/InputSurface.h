@@ -13,8 +13,11 @@
 class vtkDataArray;
 class vtkPolyData;
 
-// Changes whenever the geometry or the connectivity of a surface may have, but not with its attributes.
-vtkMTimeType GeometryTime(vtkPolyData* surface);
+// When each array of the geometry and the connectivity of a surface was changed, and how many cells come before its
+// polygons. VTK gives no two changes the same time, so that surfaces with equal times are equal. Attributes do not
+// count.
+using SurfaceTimes = std::array<vtkMTimeType, 9>;
+SurfaceTimes TimesOf(vtkPolyData* surface);
 
 // Digest of points and polygons. A reader that gives the same surface at the next time step, or a block
 // whose turn comes again, gives new arrays with the digest of the old.

@@ -199,8 +199,8 @@ struct Slot
 {
   aqr_remesher* Remesher = nullptr;
   InputSurface Surface;
-  vtkSmartPointer<vtkPoints> Points; // kept, so that no other object can take its address
-  vtkMTimeType Time = 0;
+  vtkSmartPointer<vtkPoints> Points; // none where the remesher holds no surface
+  SurfaceTimes Times = {};
   std::vector<int64_t> Locked;
   SurfaceDigest Digest = {};
   unsigned long Turn = 0;
@@ -245,9 +245,9 @@ public:
   // Makes current the slot that holds this surface, or else hands the surface to the one longest unused.
   aqr_status SetInput(vtkPolyData* input, const aqr_hooks& hooks)
   {
-    const vtkMTimeType time = GeometryTime(input);
+    const SurfaceTimes times = TimesOf(input);
     const auto unchanged = [&](const Slot& slot)
-    { return slot.Points == input->GetPoints() && slot.Time == time && slot.Locked == this->Locked; };
+    { return slot.Points && slot.Times == times && slot.Locked == this->Locked; };
     auto found = std::find_if(this->Slots.begin(), this->Slots.end(), unchanged);
     SurfaceDigest digest = {};
     if (found == this->Slots.end())
@@ -287,7 +287,7 @@ public:
     if (status == AQR_OK)
     {
       slot.Points = input->GetPoints();
-      slot.Time = time;
+      slot.Times = times;
     }
     return status;
   }

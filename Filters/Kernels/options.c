@@ -106,7 +106,8 @@ uint64_t aqr_fingerprint(const double* a, size_t n)
   {
     uint64_t bits;
     memcpy(&bits, &a[i], sizeof bits);
-    h = (h ^ bits) * 0x100000001b3u;
+    h = (h ^ bits) * 0x9e3779b97f4a7c15u;
+    h ^= h >> 29; /* or what differs in the high bits alone never reaches the others */
   }
   return a ? h : 0;
 }

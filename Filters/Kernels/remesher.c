@@ -256,6 +256,7 @@ static aqr_status run_features(aqr_remesher* r, const aqr_options* o)
   size_t n = 3 * r->base.n_faces;
   uint8_t* crease = AQR_NEW0(c, uint8_t, n);
   AQR_REQUIRE(crease, AQR_OUT_OF_MEMORY);
+  r->report.feature_edges = r->report.asymmetric_points = 0;
   if (o->feature_lines)
     AQR_TRY(aqr_features_detect(c, &r->base, o->feature_angle, shortest_feature, crease, &r->report));
   r->surface_report.feature_edges = r->report.feature_edges;

@@ -117,6 +117,44 @@ int TestCaching(int, char*[])
   filter->Update();
   CHECK(!Reused(filter, "curvature"));
 
+  // Other polygons over the same points, which were changed last.
+  vtkNew<vtkPolyData> half;
+  vtkNew<vtkCellArray> polys;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType cell = 0; cell < torus->GetNumberOfPolys() / 2; ++cell)
+  {
+    torus->GetPolys()->GetCellAtId(cell, corners);
+    polys->InsertNextCell(corners);
+  }
+  half->SetPoints(torus->GetPoints());
+  half->SetPolys(polys);
+  torus->GetPoints()->Modified();
+  torus->GetPoints()->GetData()->Modified();
+  filter->SetInputData(torus);
+  filter->Update();
+  const std::string whole = Shape(filter->GetOutput());
+  filter->SetInputData(half);
+  filter->Update();
+  CHECK(!Reused(filter, "curvature"));
+  CHECK(Shape(filter->GetOutput()) != whole);
+
+  // Verts come before the polygons and move their numbers.
+  const auto lastCell = [&] { return filter->GetOutput()->GetCellData()->GetArray("SourceCellId")->GetRange()[1]; };
+  const double before = lastCell();
+  vtkNew<vtkPolyData> withVerts;
+  vtkNew<vtkCellArray> verts;
+  for (vtkIdType point = 0; point < 5000; ++point)
+  {
+    verts->InsertNextCell({ point % 100 });
+  }
+  withVerts->SetPoints(torus->GetPoints());
+  withVerts->SetVerts(verts);
+  withVerts->SetPolys(polys);
+  torus->GetPoints()->Modified();
+  filter->SetInputData(withVerts);
+  filter->Update();
+  CHECK(lastCell() == before + 5000);
+
   // Another input of the same size, then the first again.
   filter->SetInputData(MakeTorus(60, 30));
   filter->Update();

@@ -3,6 +3,7 @@
 #include "test.h"
 
 #include "examine.h"
+#include "pipeline.h"
 #include "remesh.h"
 #include "solids.h"
 
@@ -81,6 +82,28 @@ AQR_TEST(targets_are_met_within_five_percent)
     }
     aqr_remesher_free(r);
     shape_free(&shapes[k]);
+  }
+}
+
+/* Scales of 1, 2 and 4 differ in few bits, all of them high ones. */
+AQR_TEST(a_changed_density_scale_is_taken_for_the_old_one)
+{
+  enum
+  {
+    n = 200,
+    arrays = 2000
+  };
+  double scale[n];
+  uint64_t seen[arrays];
+  unsigned state = 4;
+  for (size_t k = 0; k < arrays; k++)
+  {
+    for (size_t i = 0; i < n; i++)
+      scale[i] = (const double[]){ 1, 2, 4 }[(size_t)(3 * shape_random(&state))];
+    seen[k] = aqr_fingerprint(scale, n);
+    for (size_t i = 0; i < k; i++)
+      if (seen[i] == seen[k])
+        CHECK(false);
   }
 }
 

@@ -285,6 +285,20 @@ AQR_TEST(halves_with_almost_no_points_give_valid_meshes_and_say_what_they_lost)
   }
 }
 
+AQR_TEST(a_run_reports_what_the_one_before_it_found)
+{
+  shape m = shape_can(14, 17);
+  aqr_options o = options_for_points(400);
+  set_plane(&o, v3(0, 0, 0.3), v3(0.1, 0.2, 1));
+  aqr_remesher* r = remesh(&m, &o);
+  CHECK(aqr_remesher_report(r)->feature_edges > 0 && aqr_remesher_report(r)->asymmetric_points > 0);
+  o.symmetry = o.feature_lines = 0;
+  CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+  CHECK(aqr_remesher_report(r)->feature_edges == 0 && aqr_remesher_report(r)->asymmetric_points == 0);
+  aqr_remesher_free(r);
+  shape_free(&m);
+}
+
 AQR_TEST(symmetric_output_is_the_same_on_any_number_of_threads)
 {
   shape m = shape_can(14, 17);
