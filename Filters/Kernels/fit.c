@@ -228,25 +228,47 @@ static double sine(vec3 prev, vec3 p, vec3 next, vec3 normal)
   return n > 0 ? v3_dot(v3_cross(a, b), normal) / n : -1;
 }
 
-/* Finds the corners of vertices in question that have become too sharp, flat or turned over. */
+/* Whether the corner at the start of h has become too sharp, flat or turned over. */
+static void look_for_fold(aqr_fitter* f, aqr_index h)
+{
+  const aqr_polygon_mesh* m = f->m;
+  aqr_index at[3] = { aqr_pm_from(m, aqr_pm_prev(m, h)), aqr_pm_from(m, h), aqr_pm_to(m, h) };
+  vec3 normal = m->vertices[at[1]].normal;
+  double now = sine(aqr_pm_point(m, at[0]), aqr_pm_point(m, at[1]), aqr_pm_point(m, at[2]), normal);
+  if (now > least_sine || !(now < sine(f->before[at[0]], f->before[at[1]], f->before[at[2]], normal)))
+    return;
+  for (unsigned i = 0; i < 3; i++)
+    atomic_store_explicit(&f->folds[at[i]], 1, memory_order_relaxed);
+}
+
 static void find_folds(void* data, size_t begin, size_t end)
 {
   aqr_fitter* f = data;
-  const aqr_polygon_mesh* m = f->m;
   for (aqr_index h = (aqr_index)begin; h < end; h++)
+    if (aqr_pm_face(f->m, h) != AQR_NONE)
+      look_for_fold(f, h);
+}
+
+/* ... of those that have a vertex held back: few. */
+static void find_folds_again(void* data, size_t begin, size_t end)
+{
+  aqr_fitter* f = data;
+  const aqr_polygon_mesh* m = f->m;
+  for (size_t v = begin; v < end; v++)
   {
-    if (aqr_pm_face(m, h) == AQR_NONE)
+    if (!f->back[v])
       continue;
-    aqr_index u = aqr_pm_from(m, aqr_pm_prev(m, h)), v = aqr_pm_from(m, h), w = aqr_pm_to(m, h);
-    if (!f->back[u] && !f->back[v] && !f->back[w])
-      continue;
-    vec3 normal = m->vertices[v].normal;
-    double now = sine(aqr_pm_point(m, u), aqr_pm_point(m, v), aqr_pm_point(m, w), normal);
-    if (now > least_sine || !(now < sine(f->before[u], f->before[v], f->before[w], normal)))
-      continue;
-    const aqr_index at[3] = { u, v, w };
-    for (unsigned i = 0; i < 3; i++)
-      atomic_store_explicit(&f->folds[at[i]], 1, memory_order_relaxed);
+    aqr_index h = m->vertices[v].out;
+    do
+    {
+      if (aqr_pm_face(m, h) != AQR_NONE)
+      {
+        look_for_fold(f, aqr_pm_prev(m, h));
+        look_for_fold(f, h);
+        look_for_fold(f, aqr_pm_next(m, h));
+      }
+      h = aqr_pm_next_around(m, h);
+    } while (h != m->vertices[v].out);
   }
 }
 
@@ -270,14 +292,16 @@ static aqr_status damp(aqr_context* c, aqr_fitter* f, double at)
 {
   const aqr_polygon_mesh* m = f->m;
   aqr_status status = AQR_OK;
-  memset(f->back, 1, m->n_vertices);
   for (size_t v = 0; v < m->n_vertices; v++)
     atomic_init(&f->folds[v], 0);
   for (unsigned round = 0; round < damp_rounds; round++)
   {
     f->keep = round + 1 < damp_rounds ? 0.5 : 0;
     atomic_init(&f->folded, 0);
-    AQR_TRY(aqr_parallel(c, m->n_half_edges, find_folds, f, at, at));
+    if (round == 0)
+      AQR_TRY(aqr_parallel(c, m->n_half_edges, find_folds, f, at, at));
+    else
+      AQR_TRY(aqr_parallel(c, m->n_vertices, find_folds_again, f, at, at));
     AQR_TRY(aqr_parallel(c, m->n_vertices, hold_back, f, at, at));
     if (!atomic_load_explicit(&f->folded, memory_order_relaxed))
       break;
