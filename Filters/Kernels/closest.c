@@ -140,3 +140,19 @@ void aqr_closest_near(
       break;
   }
 }
+
+aqr_place aqr_place_in(const aqr_surface* s, aqr_index f, vec3 p, double least)
+{
+  aqr_place at = { f, { 0, 0, 0 } };
+  vec3 n = aqr_face_cross(s, f);
+  double sum = 0;
+  for (unsigned i = 0; i < 3; i++)
+  {
+    vec3 a = aqr_point(s, s->corner[3 * f + (i + 1) % 3]), b = aqr_point(s, s->corner[3 * f + (i + 2) % 3]);
+    at.bary[i] = fmax(least * v3_norm2(n), v3_dot(n, v3_cross(v3_sub(a, p), v3_sub(b, p))));
+    sum += at.bary[i];
+  }
+  for (unsigned i = 0; i < 3; i++)
+    at.bary[i] = sum > 0 ? at.bary[i] / sum : 1.0 / 3;
+  return at;
+}

@@ -18,6 +18,9 @@ typedef struct aqr_closest
 void aqr_closest_near(
   const aqr_surface* s, aqr_index start, vec3 p, unsigned most_steps, bool over_seams, aqr_closest* r);
 
+/* Where p lies in face f, clamped to shares of at least `least`; the middle of a face without area. */
+aqr_place aqr_place_in(const aqr_surface* s, aqr_index f, vec3 p, double least);
+
 double aqr_triangle_distance2(vec3 a, vec3 b, vec3 c, vec3 p);
 
 static inline vec3 aqr_place_position(const aqr_surface* s, const aqr_place* at)

@@ -13,7 +13,7 @@
 enum
 {
   most_attempts = 9, /* at meeting a target number of points ... */
-  fine_attempts = 6, /* ... of which the first ask for better than what counts as met */
+  fine_attempts = 8, /* ... of which the first ask for better than what counts as met */
   most_retries = 12, /* at a tolerance whose lines lost the topology */
   most_cuts = 24     /* rounds of arcs that keep the topology */
 };

@@ -1,25 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Paper 5.1 and 5.2: from the network's loops to polygons. */
+#include "closest.h"
 #include "network.h"
 
 #include <string.h>
-
-/* Barycentric coordinates of p in face f, clamped into it. */
-static aqr_place place_in(const aqr_surface* s, aqr_index f, vec3 p)
-{
-  aqr_place at = { f, { 0, 0, 0 } };
-  vec3 n = aqr_face_cross(s, f);
-  double sum = 0;
-  for (unsigned i = 0; i < 3; i++)
-  {
-    vec3 a = aqr_point(s, s->corner[3 * f + (i + 1) % 3]), b = aqr_point(s, s->corner[3 * f + (i + 2) % 3]);
-    at.bary[i] = fmax(0, v3_dot(n, v3_cross(v3_sub(a, p), v3_sub(b, p))));
-    sum += at.bary[i];
-  }
-  for (unsigned i = 0; i < 3; i++)
-    at.bary[i] = sum > 0 ? at.bary[i] / sum : 1.0 / 3;
-  return at;
-}
 
 static vec3 normal_at(const aqr_surface* s, const aqr_field* field, const aqr_place* at)
 {
@@ -49,7 +33,7 @@ static aqr_vertex vertex_of_crossing(
   vec3 u = v3_cross(e, v3_sub(a->p, b->p)), v = v3_cross(e, d);
   double n = v3_norm2(v), t = n > 0 ? fmin(1, fmax(0, -v3_dot(u, v) / n)) : 0.5;
   aqr_vertex r = { .position = v3_madd(a->p, t, d), .kind = AQR_VERTEX_INTERIOR, .out = AQR_NONE };
-  r.place = place_in(s, a->face, r.position);
+  r.place = aqr_place_in(s, a->face, r.position, 0);
   r.normal = normal_at(s, field, &r.place);
   r.size = size_at(s, sizing, a->face);
   return r;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Lines from seeds: grown, judged, committed with the marks of their crossings, and led on over seams. */
+#include "closest.h"
 #include "sampler.h"
 
 enum
@@ -355,18 +356,7 @@ aqr_status aqr_seed_inside(aqr_sampler* m, aqr_index f, vec3 p, vec3 d, double d
   aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
   if (status != AQR_OK || !allowed)
     return status;
-  const aqr_surface* s = m->s;
-  aqr_place at = { f, { 0, 0, 0 } };
-  vec3 n = aqr_face_cross(s, f);
-  double sum = 0;
-  for (unsigned i = 0; i < 3; i++)
-  {
-    vec3 a = aqr_point(s, s->corner[3 * f + (i + 1) % 3]), b = aqr_point(s, s->corner[3 * f + (i + 2) % 3]);
-    at.bary[i] = fmax(1e-6, v3_dot(n, v3_cross(v3_sub(a, p), v3_sub(b, p))));
-    sum += at.bary[i];
-  }
-  for (unsigned i = 0; i < 3; i++)
-    at.bary[i] = sum > 0 ? at.bary[i] / sum : 1.0 / 3;
+  aqr_place at = aqr_place_in(m->s, f, p, 1e-6);
   status = aqr_grow_inside(m->c, &m->grower, &at, d);
   if (status == AQR_OK)
     status = commit(m, AQR_NONE, &id);

@@ -178,4 +178,37 @@ AQR_TEST(no_vertex_of_a_handful_is_fitted_far_off)
   shape_free(&m);
 }
 
+/* Seeds meant for places along a needle all stood in its middle: the line there was found again and again, and points
+ * came by the thousand. */
+AQR_TEST(places_along_a_needle_are_all_its_middle)
+{
+  enum
+  {
+    sides = 64
+  };
+  double points[3 * (2 * sides + 2)] = { 0 };
+  int64_t triangles[3 * 4 * sides];
+  for (int64_t i = 0; i < sides; i++)
+  {
+    const double a = shape_turn * (double)i / sides;
+    int64_t next = (i + 1) % sides;
+    for (int64_t end = 0; end < 2; end++)
+      v3_store(points + 3 * (sides * end + i), v3(cos(a), sin(a), 1000.0 * (double)end));
+    const int64_t t[12] = { i, next, sides + i, next, sides + next, sides + i, next, i, 2 * sides, sides + i,
+      sides + next, 2 * sides + 1 };
+    memcpy(triangles + 12 * i, t, sizeof t);
+  }
+  points[3 * (2 * sides + 1) + 2] = 1000;
+  aqr_input input = {
+    .number_of_points = 2 * sides + 2, .points_d = points, .number_of_triangles = 4 * sides, .triangles = triangles
+  };
+  aqr_options o = aqr_default_options();
+  aqr_remesher* r = NULL;
+  CHECK(!fault_of(&input, &o));
+  CHECK(aqr_remesher_new(NULL, &r) == AQR_OK && aqr_remesher_set_input(r, &input) == AQR_OK);
+  CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+  CHECK_BELOW((double)aqr_remesher_mesh(r)->number_of_points, 300);
+  aqr_remesher_free(r);
+}
+
 AQR_TEST_MAIN
