@@ -2,14 +2,14 @@
 #include "faces.h"
 
 #include "joints.h"
+#include "large_faces.h"
 #include "marks.h"
 #include "partition.h"
 #include "regularize.h"
 
 enum
 {
-  rounds = 4,
-  split_candidates = 64 /* corners looked at on one side when a large face is split */
+  rounds = 4
 };
 
 static const double near_intersection = 0.2; /* of the local spacing: such vertices are merged (paper 5) */
@@ -276,73 +276,17 @@ static aqr_status partition_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index 
   return p.cost < INFINITY ? draw(c, m, corner, &p) : AQR_OK;
 }
 
-/* How far the two angles that a diagonal to `to` makes at a corner are from right angles; infinite outside the face,
- * whose normal is the one at vertices of creases. */
-static double diagonal_angles(const aqr_polygon_mesh* m, aqr_index h, aqr_index to, vec3 normal)
-{
-  const aqr_vertex* v = &m->vertices[aqr_pm_from(m, h)];
-  normal = v->kind >= AQR_VERTEX_FEATURE ? normal : v->normal;
-  vec3 prev = aqr_pm_point(m, aqr_pm_from(m, aqr_pm_prev(m, h))), next = aqr_pm_point(m, aqr_pm_to(m, h));
-  vec3 end = aqr_pm_point(m, to);
-  double whole = aqr_corner_angle(prev, v->position, next, normal);
-  double part = aqr_corner_angle(end, v->position, next, normal);
-  const double right = 1.57079632679489662;
-  return part < whole ? fmin(right, fabs(part - right)) + fmin(right, fabs(whole - part - right)) : INFINITY;
-}
-
-/* Splits a face of very many corners at the diagonal with the highest score (paper 5.2). False where it has none. */
-static aqr_status split_large(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, size_t n, bool* split)
-{
-  aqr_index h = m->faces[f], best[2] = { AQR_NONE, AQR_NONE };
-  double least = INFINITY, perimeter = 0;
-  size_t stride = n / split_candidates + 1;
-  vec3 normal = v3_unit_or(aqr_pm_area(m, f), m->vertices[aqr_pm_from(m, h)].normal);
-  for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))
-    perimeter += edge_length(m, h);
-  for (size_t i = 0; i < n; i++, h = aqr_pm_next(m, h))
-  {
-    if (i % stride)
-      continue;
-    aqr_index k = aqr_pm_next(m, h);
-    for (size_t j = 2; j + 1 < n; j++)
-    {
-      k = aqr_pm_next(m, k);
-      if (i + j >= n || j % stride)
-        continue;
-      aqr_index u = aqr_pm_from(m, h), v = aqr_pm_from(m, k);
-      double angles = diagonal_angles(m, h, v, normal) + diagonal_angles(m, k, u, normal);
-      double cost = (angles < INFINITY ? angles : 100) +
-                    8 * v3_norm(v3_sub(aqr_pm_point(m, u), aqr_pm_point(m, v))) / (perimeter > 0 ? perimeter : 1);
-      if (cost < least && aqr_pm_find(m, u, v) == AQR_NONE)
-      {
-        least = cost;
-        best[0] = h;
-        best[1] = k;
-      }
-    }
-  }
-  *split = best[0] != AQR_NONE;
-  return *split ? aqr_pm_split_face(c, m, best[0], best[1], AQR_LINE_MIN) : AQR_OK;
-}
-
 /* Faces that a split adds come at the end of the list and are looked at in turn. */
 static aqr_status partition_all(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces_options* o, aqr_marks* marks)
 {
   aqr_status status = AQR_OK;
+  AQR_TRY(aqr_cut_large_faces(c, m, o->largest_valence, 0.7));
   AQR_TRY(aqr_mark(c, m, m->n_faces, is_to_part, o, marks));
   for (aqr_index f = 0; f < m->n_faces; f++)
   {
     if (f % 65536 == 0)
       AQR_REQUIRE(aqr_step(c, 0.8), AQR_CANCELLED);
-    if (m->faces[f] == AQR_NONE || !aqr_is_marked(marks, f))
-      continue;
-    size_t n = aqr_pm_face_size(m, f);
-    for (bool split = true; split && n > AQR_POLYGON_CORNERS && n > (size_t)o->largest_valence;)
-    {
-      AQR_TRY(split_large(c, m, f, n, &split));
-      n = aqr_pm_face_size(m, f);
-    }
-    if (n <= AQR_POLYGON_CORNERS)
+    if (aqr_is_marked(marks, f))
       AQR_TRY(partition_face(c, m, f, o));
   }
 done:
@@ -378,6 +322,7 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   aqr_marks marks = { 0 };
   AQR_TRY(aqr_pm_verify(c, m, false));
   AQR_TRY(aqr_tidy(c, m));
+  AQR_TRY(aqr_cut_large_faces(c, m, options->largest_valence, 0));
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(merge_nearer(c, m, near_intersection, 0.2), AQR_CANCELLED);
   for (unsigned round = 1; round <= rounds; round++) /* near partners first, then farther ones */
