@@ -102,8 +102,12 @@ static aqr_status close_loop(aqr_context* c, aqr_grower* g, aqr_index met, doubl
    */
   size_t m = (met - g->lines->n_samples) / 2 + 1;
   vec3 x = aqr_tracer_position(t), d = aqr_tracer_direction(t);
-  while (m + 4 < t->n_samples && v3_dot(v3_sub(t->samples[m].p, x), d) < 2 * distance)
-    m++;
+  double ahead = -INFINITY, now = v3_dot(v3_sub(t->samples[m].p, x), d);
+  for (; m + 4 < t->n_samples && now < 2 * distance && now >= ahead; m++) /* not beyond a quarter of a thin tube */
+  {
+    ahead = now;
+    now = v3_dot(v3_sub(t->samples[m + 1].p, x), d);
+  }
   if (m + 4 >= t->n_samples)
     return AQR_OK;
   aqr_sample target = t->samples[m];
