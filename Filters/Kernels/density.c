@@ -172,7 +172,7 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
   if (status != AQR_OK)
     goto done;
   began = aqr_begin_stage(r, AQR_STAGE_FACES);
-  aqr_faces_options faces = { o->convex_partition != 0, o->largest_valence, &tips };
+  aqr_faces_options faces = { o->convex_partition != 0, o->largest_valence, &tips, r->surface, r->field.normal };
   status = aqr_faces_finish(c, &r->polygons, &faces);
   if (status == AQR_OK && o->pure_quads)
     status = aqr_subdivide(c, r->surface, &r->polygons);

@@ -5,6 +5,7 @@
 #include "large_faces.h"
 #include "marks.h"
 #include "partition.h"
+#include "peaks.h"
 #include "regularize.h"
 
 enum
@@ -322,6 +323,8 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   aqr_marks marks = { 0 };
   AQR_TRY(aqr_pm_verify(c, m, false));
   AQR_TRY(aqr_tidy(c, m));
+  if (options->surface)
+    AQR_TRY(aqr_peaks_raise(c, options->surface, options->normals, m));
   AQR_TRY(aqr_cut_large_faces(c, m, options->largest_valence, 0));
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(merge_nearer(c, m, near_intersection, 0.2), AQR_CANCELLED);

@@ -7,9 +7,11 @@
 
 typedef struct aqr_faces_options
 {
-  bool convex_partition; /* split concave faces */
-  int largest_valence;   /* split faces with more corners; at least 4 */
-  const aqr_tips* tips;  /* what lies far out of the faces, or NULL */
+  bool convex_partition;      /* split concave faces */
+  int largest_valence;        /* split faces with more corners; at least 4 */
+  const aqr_tips* tips;       /* what lies far out of the faces, or NULL */
+  const aqr_surface* surface; /* whose peaks are raised, or NULL */
+  const double* normals;      /* 3 per point of it */
 } aqr_faces_options;
 
 /* Dangling edges go, near intersections merge, T-joints that face each other join, faces are made convex and split to

@@ -211,8 +211,7 @@ static vec3 centre_of(const aqr_polygon_mesh* m, aqr_index f)
   return v3_scale(sum, 1 / n);
 }
 
-/* Mean distance of the corners from the centre, and mean of their sizes. */
-static double radius_of(const aqr_polygon_mesh* m, aqr_index f, double* size)
+double aqr_face_radius(const aqr_polygon_mesh* m, aqr_index f, double* size)
 {
   const vec3 centre = centre_of(m, f);
   double sum = 0, n = 0;
@@ -230,8 +229,7 @@ static double radius_of(const aqr_polygon_mesh* m, aqr_index f, double* size)
   return sum / n;
 }
 
-/* Of p from the triangles between the sides of a face and its centre. */
-static double distance2_from(const aqr_polygon_mesh* m, aqr_index f, vec3 p)
+double aqr_face_distance2(const aqr_polygon_mesh* m, aqr_index f, vec3 p)
 {
   double least = INFINITY;
   const vec3 centre = centre_of(m, f);
@@ -245,8 +243,8 @@ static double distance2_from(const aqr_polygon_mesh* m, aqr_index f, vec3 p)
   return least;
 }
 
-/* Cuts a face into triangles that meet at a new vertex: one diagonal, the vertex into it, then the other spokes. */
-static aqr_status raise_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, const aqr_vertex* tip)
+/* One diagonal, the vertex into it, then the other spokes. */
+aqr_status aqr_raise_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, const aqr_vertex* tip)
 {
   aqr_status status = AQR_OK;
   aqr_index h = m->faces[f], k = aqr_pm_next(m, aqr_pm_next(m, h)), spoke;
@@ -274,7 +272,7 @@ typedef struct outlier
 
 static void look_at_face(const aqr_polygon_mesh* m, aqr_index f, vec3 p, outlier* x)
 {
-  double d = distance2_from(m, f, p);
+  double d = aqr_face_distance2(m, f, p);
   if (d < x->distance2)
   {
     x->distance2 = d;
@@ -298,18 +296,18 @@ static outlier farthest_point(
       look_at_face(m, f, p, &x);
     for (size_t k = 0; k < v->n_faces && x.distance2 > best.distance2; k++)
       if (v->faces[k] != elected)
-        x.distance2 = lesser(x.distance2, distance2_from(m, v->faces[k], p));
+        x.distance2 = lesser(x.distance2, aqr_face_distance2(m, v->faces[k], p));
     if (x.distance2 > best.distance2)
       best = x;
   }
   return best;
 }
 
-static aqr_vertex vertex_at(const aqr_tips* t, aqr_index point, double size)
+aqr_vertex aqr_vertex_at(const aqr_surface* s, const double* normals, aqr_index point, double size)
 {
-  aqr_index h = t->s->fan[point];
-  aqr_vertex r = { .position = aqr_point(t->s, point), .size = size, .kind = AQR_VERTEX_INTERIOR, .out = AQR_NONE };
-  r.normal = v3_load(t->normals + 3 * (size_t)point);
+  aqr_index h = s->fan[point];
+  aqr_vertex r = { .position = aqr_point(s, point), .size = size, .kind = AQR_VERTEX_INTERIOR, .out = AQR_NONE };
+  r.normal = v3_load(normals + 3 * (size_t)point);
   r.place.face = aqr_face_of(h);
   r.place.bary[h % 3] = 1;
   return r;
@@ -326,12 +324,12 @@ static aqr_status raise_over(aqr_context* c, const aqr_tips* t, size_t bay, aqr_
   while (m->n_faces - first < most_triangles)
   {
     const outlier x = farthest_point(t, bay, m, v, f, first);
-    double size, radius = radius_of(m, x.face, &size);
+    double size, radius = aqr_face_radius(m, x.face, &size);
     if (!(sqrt(x.distance2) > least_height * radius))
       break;
-    const aqr_vertex tip = vertex_at(t, x.point, size);
+    const aqr_vertex tip = aqr_vertex_at(t->s, t->normals, x.point, size);
     v->raised[f] = 1;
-    AQR_TRY(raise_face(c, m, x.face, &tip));
+    AQR_TRY(aqr_raise_face(c, m, x.face, &tip));
   }
 done:
   return status;

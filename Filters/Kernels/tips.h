@@ -34,4 +34,15 @@ void aqr_tips_free(aqr_context* c, aqr_tips* tips);
  * that meet there. */
 aqr_status aqr_tips_raise(aqr_context* c, const aqr_tips* tips, aqr_polygon_mesh* m);
 
+/* ---- a face that something stands out of ---- */
+
+/* Mean distance of the corners from the centre, and mean of their sizes. */
+double aqr_face_radius(const aqr_polygon_mesh* m, aqr_index f, double* size);
+/* Of p from the triangles between the sides of a face and its centre. */
+double aqr_face_distance2(const aqr_polygon_mesh* m, aqr_index f, vec3 p);
+/* Cuts a face into triangles that meet at a new vertex. */
+aqr_status aqr_raise_face(aqr_context* c, aqr_polygon_mesh* m, aqr_index f, const aqr_vertex* tip);
+/* A free vertex at a point of the surface. */
+aqr_vertex aqr_vertex_at(const aqr_surface* s, const double* normals, aqr_index point, double size);
+
 #endif

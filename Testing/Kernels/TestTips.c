@@ -112,4 +112,42 @@ AQR_TEST(a_bay_that_another_face_stands_for_is_left_alone)
   CHECK(count_raised(0, 0, 0.65) == 0);
 }
 
+/* Rings around a cone end where they are as small as their spacing: the cone was cut off there, by up to a tenth of its
+ * height. */
+AQR_TEST(the_point_of_a_cone_is_cut_off)
+{
+  enum
+  {
+    sides = 512
+  };
+  static double points[3 * (sides + 2)];
+  static int64_t triangles[6 * sides];
+  for (int64_t i = 0; i < sides; i++)
+  {
+    double a = shape_turn * (double)i / sides;
+    const int64_t next = (i + 1) % sides, t[6] = { sides, i, next, sides + 1, next, i };
+    memcpy(triangles + 6 * i, t, sizeof t);
+    v3_store(points + 3 * i, v3(cos(a), sin(a), 0));
+  }
+  points[3 * sides + 2] = 3;
+  aqr_input input = {
+    .number_of_points = sides + 2, .points_d = points, .number_of_triangles = 2 * sides, .triangles = triangles
+  };
+  aqr_options o = aqr_default_options();
+  o.density = AQR_DENSITY_POINTS;
+  for (int64_t asked = 200; asked < 1000; asked += 100)
+  {
+    o.target_points = asked;
+    aqr_remesher* r = NULL;
+    CHECK(aqr_remesher_new(NULL, &r) == AQR_OK && aqr_remesher_set_input(r, &input) == AQR_OK);
+    CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+    const aqr_mesh* m = aqr_remesher_mesh(r);
+    double highest = 0;
+    for (size_t v = 0; v < m->number_of_points; v++)
+      highest = fmax(highest, m->points[3 * v + 2]);
+    CHECK_BELOW(3 - highest, 0.03);
+    aqr_remesher_free(r);
+  }
+}
+
 AQR_TEST_MAIN
