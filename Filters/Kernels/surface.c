@@ -57,39 +57,56 @@ static aqr_index opposite(const aqr_surface* s, aqr_index h)
   return aqr_from(s, aqr_prev(h));
 }
 
-/* Half-edges of one undirected edge meet in the bucket of its smaller point. Two make neighbours, whatever their
- * direction; more are a non-manifold edge, at which all faces are cut apart. */
-static void pair_in_bucket(builder* b, aqr_index v)
+static aqr_index larger_end(const aqr_surface* s, aqr_index h)
+{
+  aqr_index p = aqr_from(s, h), q = aqr_to(s, h);
+  return p > q ? p : q;
+}
+
+/* Shell's way: most buckets hold three half-edges, that of a fan's centre can hold as many as there are faces. */
+static void sort_bucket(const aqr_surface* s, aqr_index* bucket, size_t n)
+{
+  size_t gap = 1;
+  while (gap < n / 9)
+    gap = 3 * gap + 1;
+  for (; gap > 0; gap /= 3)
+    for (size_t i = gap; i < n; i++)
+    {
+      aqr_index h = bucket[i], end = larger_end(s, h);
+      size_t j = i;
+      for (; j >= gap && larger_end(s, bucket[j - gap]) > end; j -= gap)
+        bucket[j] = bucket[j - gap];
+      bucket[j] = h;
+    }
+}
+
+/* The n half-edges of one undirected edge. Two make neighbours, whatever their direction; more are a non-manifold edge,
+ * at which all faces are cut apart. */
+static void pair_up(builder* b, const aqr_index* edge, size_t n)
 {
   aqr_surface* s = b->s;
-  for (size_t i = b->first[v]; i < b->first[v + 1]; i++)
+  for (size_t i = 0; i < n; i++)
+    s->twin[edge[i]] = n == 2 ? edge[1 - i] : AQR_NONE;
+  if (n == 2 && !runs_against(s, edge[0], edge[1]))
+    atomic_store_explicit(&b->disagree, true, memory_order_relaxed);
+  if (n > 2)
+    atomic_fetch_add_explicit(&b->split_edges, 1, memory_order_relaxed);
+  if (n > 2 || (n == 2 && opposite(s, edge[0]) == opposite(s, edge[1])))
+    atomic_store_explicit(&b->may_repeat, true, memory_order_relaxed);
+}
+
+/* Half-edges of one undirected edge meet in the bucket of its smaller point. */
+static void pair_in_bucket(builder* b, aqr_index v)
+{
+  aqr_index* bucket = b->in_bucket + b->first[v];
+  size_t n = b->first[v + 1] - b->first[v];
+  sort_bucket(b->s, bucket, n);
+  for (size_t i = 0, next; i < n; i = next)
   {
-    aqr_index h = b->in_bucket[i];
-    if (h == AQR_NONE)
-      continue;
-    aqr_index far = aqr_from(s, h) == v ? aqr_to(s, h) : aqr_from(s, h), other = AQR_NONE;
-    unsigned others = 0;
-    for (size_t j = i + 1; j < b->first[v + 1]; j++)
-    {
-      aqr_index k = b->in_bucket[j];
-      if (k == AQR_NONE || (aqr_from(s, k) != far && aqr_to(s, k) != far))
-        continue;
-      other = k;
-      others++;
-      b->in_bucket[j] = AQR_NONE;
-      s->twin[k] = AQR_NONE;
-    }
-    s->twin[h] = others == 1 ? other : AQR_NONE;
-    if (others == 1)
-    {
-      s->twin[other] = h;
-      if (!runs_against(s, h, other))
-        atomic_store_explicit(&b->disagree, true, memory_order_relaxed);
-    }
-    if (others > 1)
-      atomic_fetch_add_explicit(&b->split_edges, 1, memory_order_relaxed);
-    if (others > 1 || (others == 1 && opposite(s, other) == opposite(s, h)))
-      atomic_store_explicit(&b->may_repeat, true, memory_order_relaxed);
+    aqr_index end = larger_end(b->s, bucket[i]);
+    for (next = i + 1; next < n && larger_end(b->s, bucket[next]) == end; next++)
+      ;
+    pair_up(b, bucket + i, next - i);
   }
 }
 

@@ -83,4 +83,45 @@ AQR_TEST(fins_that_repeat_are_dropped_and_others_kept)
   shape_free(&m);
 }
 
+/* Two fans around the points 0 and 1 over one rim. Where all that meets at a point is compared with all else there,
+ * this takes longer than a test may. */
+static shape spindle(size_t n, size_t fins)
+{
+  shape m = { .n_points = 2 + n, .n_triangles = 2 * n + fins };
+  m.points = calloc(3 * m.n_points, sizeof *m.points);
+  m.triangles = malloc(3 * m.n_triangles * sizeof *m.triangles);
+  m.points[2] = 1;
+  m.points[5] = -1;
+  for (size_t i = 0; i < n; i++)
+  {
+    double turn = 2 * acos(-1) * (double)i / (double)n;
+    int64_t a = (int64_t)(2 + i), b = (int64_t)(2 + (i + 1) % n);
+    m.points[3 * a] = cos(turn);
+    m.points[3 * a + 1] = sin(turn);
+    memcpy(m.triangles + 6 * i, (int64_t[6]){ 0, a, b, 1, b, a }, 6 * sizeof a);
+  }
+  for (size_t i = 0; i < fins; i++) /* from one spoke to the opposite one */
+    memcpy(m.triangles + 6 * n + 3 * i, (int64_t[3]){ 0, (int64_t)(2 + i), (int64_t)(2 + n / 2 + i) },
+      3 * sizeof *m.triangles);
+  return m;
+}
+
+AQR_TEST(a_million_triangles_around_a_point_meet_as_those_around_any_other)
+{
+  for (size_t fins = 0; fins <= 3; fins += 3)
+  {
+    shape m = spindle(fins ? 1000 : 1000000, fins);
+    aqr_input input = shape_input(&m);
+    aqr_context c = { .end = 1 };
+    aqr_report report = { 0 };
+    aqr_surface s;
+    CHECK(aqr_surface_build(&c, &input, 4, &s, &report) == AQR_OK);
+    CHECK(s.n_faces == m.n_triangles && report.split_edges == 2 * fins && report.unorientable_edges == 0);
+    CHECK(fins || (report.components == 1 && report.boundary_loops == 0 && s.n_points == m.n_points));
+    aqr_surface_free(&c, &s);
+    CHECK(c.bytes == 0);
+    shape_free(&m);
+  }
+}
+
 AQR_TEST_MAIN
