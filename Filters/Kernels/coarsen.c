@@ -2,9 +2,9 @@
 #include "coarsen.h"
 
 #include "regularize.h"
+#include "sort.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum
 {
@@ -65,7 +65,7 @@ static aqr_status build(
     aqr_index p = s->corner[3 * (size_t)faces[i / 3] + i % 3];
     ids[i] = corner[i] = sectors ? p : s->clean[p];
   }
-  qsort(ids, 3 * n, sizeof *ids, by_index);
+  AQR_TRY(aqr_sort(c, ids, 3 * n, sizeof *ids, by_index));
   for (size_t i = 0; i < 3 * n; i++)
     if (i == 0 || ids[i] != ids[n_ids - 1])
       ids[n_ids++] = ids[i];
@@ -73,6 +73,7 @@ static aqr_status build(
     offsets[i] = 3 * i;
   for (size_t i = 0; i < 3 * n; i++)
   {
+    AQR_REQUIRE(aqr_worked(c, 8), AQR_CANCELLED);
     const aqr_index* at = bsearch(&corner[i], ids, n_ids, sizeof *ids, by_index);
     corner[i] = (aqr_index)(at - ids);
     aqr_vertex* v = &vertices[corner[i]];
@@ -105,10 +106,12 @@ done:
 }
 
 /* Vertices inside a chain, and those where chains end, meet or turn. */
-static void set_kinds(aqr_polygon_mesh* m)
+static aqr_status set_kinds(aqr_context* c, aqr_polygon_mesh* m)
 {
   for (aqr_index v = 0; v < m->n_vertices; v++)
   {
+    if (!aqr_worked(c, 8))
+      return AQR_CANCELLED;
     vec3 along[2] = { { 0, 0, 0 }, { 0, 0, 0 } };
     unsigned n = 0;
     uint8_t kind = AQR_VERTEX_FEATURE;
@@ -127,6 +130,7 @@ static void set_kinds(aqr_polygon_mesh* m)
     bool smooth = n == 2 && v3_dot(along[0], along[1]) < -corner_cosine;
     m->vertices[v].kind = n == 0 ? AQR_VERTEX_INTERIOR : smooth ? kind : AQR_VERTEX_CORNER;
   }
+  return AQR_OK;
 }
 
 /* ---- quadrics ---- */
@@ -155,11 +159,13 @@ static vec3 face_cross(const aqr_polygon_mesh* m, aqr_index h)
     v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), a), v3_sub(aqr_pm_point(m, aqr_pm_from(m, aqr_pm_prev(m, h))), a));
 }
 
-static void set_quadrics(coarsener* k)
+static aqr_status set_quadrics(coarsener* k)
 {
   const aqr_polygon_mesh* m = &k->mesh;
   for (aqr_index h = 0; h < m->n_half_edges; h++)
   {
+    if (!aqr_worked(k->c, 8))
+      return AQR_CANCELLED;
     if (aqr_pm_face(m, h) == AQR_NONE)
       continue;
     vec3 cross = face_cross(m, h), p = aqr_pm_point(m, aqr_pm_from(m, h));
@@ -171,6 +177,7 @@ static void set_quadrics(coarsener* k)
       add_plane(&k->quadrics[aqr_pm_to(m, h)], n, p, border_weight * v3_norm2(e));
     }
   }
+  return AQR_OK;
 }
 
 /* ---- contraction ---- */
@@ -205,6 +212,8 @@ static aqr_status list_candidates(coarsener* k)
   k->n_candidates = 0;
   for (aqr_index h = 0; h < m->n_half_edges; h++)
   {
+    if (!aqr_worked(k->c, 4))
+      return AQR_CANCELLED;
     if (!aqr_pm_edge_lives(m, h))
       continue;
     aqr_index u = aqr_pm_from(m, h), v = aqr_pm_to(m, h);
@@ -219,9 +228,7 @@ static aqr_status list_candidates(coarsener* k)
       q.a[i] += k->quadrics[v].a[i];
     k->candidates[k->n_candidates++] = (candidate){ error_at(&q, p) + length_price * length2 * length2, h };
   }
-  if (k->n_candidates)
-    qsort(k->candidates, k->n_candidates, sizeof *k->candidates, by_cost);
-  return AQR_OK;
+  return aqr_sort(k->c, k->candidates, k->n_candidates, sizeof *k->candidates, by_cost);
 }
 
 static void touch_around(coarsener* k, aqr_index v, aqr_index pass)
@@ -236,11 +243,15 @@ static void touch_around(coarsener* k, aqr_index v, aqr_index pass)
 }
 
 /* One pass over the cheaper half of the edges, none beside another. */
-static bool contract_pass(coarsener* k, aqr_index pass, size_t* left, size_t points)
+static aqr_status contract_pass(coarsener* k, aqr_index pass, size_t points, size_t* left, bool* any)
 {
-  bool any = false;
-  for (size_t i = 0; i<k->n_candidates&& * left> points && (i < k->n_candidates / 2 || !any); i++)
+  *any = false;
+  for (size_t i = 0; i < k->n_candidates && (i < k->n_candidates / 2 || !*any); i++)
   {
+    if (*left <= points)
+      break;
+    if (!aqr_worked(k->c, 32))
+      return AQR_CANCELLED;
     aqr_index h = k->candidates[i].h;
     if (!aqr_pm_edge_lives(&k->mesh, h))
       continue;
@@ -253,22 +264,22 @@ static bool contract_pass(coarsener* k, aqr_index pass, size_t* left, size_t poi
     for (unsigned j = 0; j < 10; j++)
       k->quadrics[u].a[j] += k->quadrics[v].a[j];
     touch_around(k, u, pass);
-    any = true;
+    *any = true;
     --*left;
   }
-  return any;
+  return AQR_OK;
 }
 
 static aqr_status contract(coarsener* k, size_t points)
 {
   aqr_status status = AQR_OK;
   size_t left = k->mesh.n_vertices;
-  for (aqr_index pass = 1; pass <= most_passes && left > points; pass++)
+  bool any = true;
+  for (aqr_index pass = 1; any && pass <= most_passes && left > points; pass++)
   {
     AQR_REQUIRE(aqr_step(k->c, 0), AQR_CANCELLED);
     AQR_TRY(list_candidates(k));
-    if (!contract_pass(k, pass, &left, points))
-      break;
+    AQR_TRY(contract_pass(k, pass, points, &left, &any));
   }
 done:
   return status;
@@ -296,7 +307,9 @@ aqr_status aqr_coarsen_component(aqr_context* c, const aqr_surface* s, const aqr
   aqr_status status = AQR_OK;
   coarsener k = { .c = c };
   status = build(&k, s, field, faces, n_faces, false);
-  if (status == AQR_INTERNAL || (status == AQR_OK && !aqr_pm_is_consistent(&k.mesh)))
+  if (status == AQR_OK)
+    status = aqr_pm_verify(c, &k.mesh, false);
+  if (status == AQR_INTERNAL)
   {
     aqr_polygon_mesh_free(c, &k.mesh);
     status = build(&k, s, field, faces, n_faces, true);
@@ -306,8 +319,8 @@ aqr_status aqr_coarsen_component(aqr_context* c, const aqr_surface* s, const aqr
   k.quadrics = AQR_NEW0(c, quadric, k.n_quadrics);
   k.touched = AQR_NEW0(c, aqr_index, k.n_quadrics);
   AQR_REQUIRE(k.quadrics && k.touched, AQR_OUT_OF_MEMORY);
-  set_kinds(&k.mesh);
-  set_quadrics(&k);
+  AQR_TRY(set_kinds(c, &k.mesh));
+  AQR_TRY(set_quadrics(&k));
   AQR_TRY(contract(&k, points));
   AQR_TRY(aqr_pm_compact(c, &k.mesh));
   set_sizes(&k.mesh);

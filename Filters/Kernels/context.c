@@ -9,8 +9,9 @@
 enum
 {
   grain = 1024,
-  first_block = 16 * grain, /* elements before the first look at the progress hook */
-  most_growth = 4           /* of a block over the one before */
+  first_block = 4 * grain, /* elements before the first look at the progress hook */
+  most_growth = 4,         /* of a block over the one before */
+  most_unasked = 1 << 16   /* small steps between two looks */
 };
 
 static const double block_seconds = 0.02; /* between two looks: short for a cancel, long for threads to be worth it */
@@ -98,6 +99,7 @@ bool aqr_trim(aqr_context* c, void** p, size_t* capacity, size_t need, size_t si
 
 bool aqr_step(aqr_context* c, double fraction)
 {
+  c->unasked = 0;
   if (!c->hooks.progress)
     return true;
   double f = c->begin + (c->end - c->begin) * fraction;
@@ -105,6 +107,12 @@ bool aqr_step(aqr_context* c, double fraction)
     f = c->last;
   c->last = f;
   return c->hooks.progress(c->hooks.user, f, c->stage ? c->stage : "") != 0;
+}
+
+bool aqr_worked(aqr_context* c, size_t work)
+{
+  c->unasked += work;
+  return c->unasked < most_unasked || aqr_step(c, 0);
 }
 
 double aqr_seconds(void)

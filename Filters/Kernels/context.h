@@ -15,6 +15,7 @@ typedef struct aqr_context
   size_t peak_bytes; /* largest `bytes` since the stage began */
   double begin, end; /* range of the overall progress that the running stage fills */
   double last;       /* last fraction reported, so that progress never goes backwards */
+  size_t unasked;    /* work since the hook was asked last */
   const char* stage;
   char message[160];
 } aqr_context;
@@ -42,6 +43,10 @@ bool aqr_trim(aqr_context* c, void** p, size_t* capacity, size_t need, size_t si
 /* Reports that `fraction` of the running stage is done; false when the caller wants to stop.
  * Cheap enough for every few thousand steps of a loop. Only on the thread that called run. */
 bool aqr_step(aqr_context* c, double fraction);
+
+/* `work` more small steps are done, of some ten nanoseconds each; false when the caller wants to stop. Asks the hook
+ * once in many steps, so that any loop may call it. Only on the thread that called run. */
+bool aqr_worked(aqr_context* c, size_t work);
 
 /* Of a clock that goes on; only for figures and for how often to look at the hooks, never for results. */
 double aqr_seconds(void);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Polygon meshes as a whole: made of lists of polygons, put together, compacted. */
 #include "polygon_mesh.h"
+#include "sort.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct side
@@ -73,7 +73,7 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
       sides[i - offsets[0]] =
         (side){ a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a, (aqr_index)(i - offsets[0]) };
     }
-  qsort(sides, n, sizeof *sides, by_key);
+  AQR_TRY(aqr_sort(c, sides, n, sizeof *sides, by_key));
   AQR_REQUIRE(pair_sides(sides, n, from, base, half_edge, &edges), AQR_INTERNAL);
   AQR_REQUIRE(AQR_RESERVE(c, m->vertices, m->vertex_capacity, m->n_vertices + n_vertices) &&
                 AQR_RESERVE(c, m->half_edges, m->half_edge_capacity, base + 2 * edges) &&
@@ -84,6 +84,7 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
     m->half_edges[base + 2 * e + 1] = (aqr_half_edge){ AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
   for (size_t f = 0; f < n_faces; f++)
   {
+    AQR_REQUIRE(aqr_worked(c, 8), AQR_CANCELLED);
     for (size_t i = offsets[f]; i < offsets[f + 1]; i++)
     {
       aqr_index h = half_edge[i - offsets[0]];
@@ -93,6 +94,8 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
     m->faces[first_face + f] = half_edge[offsets[f] - offsets[0]];
   }
   for (size_t f = 0; f < n_faces; f++)
+  {
+    AQR_REQUIRE(aqr_worked(c, 8), AQR_CANCELLED);
     for (size_t i = offsets[f]; i < offsets[f + 1]; i++)
     {
       aqr_index h = half_edge[i - offsets[0]],
@@ -101,6 +104,7 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
       if (m->half_edges[h ^ 1].face == AQR_NONE)
         m->half_edges[h ^ 1].from = m->half_edges[k].from;
     }
+  }
   memcpy(m->vertices + first_vertex, vertices, n_vertices * sizeof *vertices);
   m->n_vertices += n_vertices;
   m->n_faces += n_faces;
@@ -170,16 +174,26 @@ static aqr_index renumbered(const aqr_index* rank, aqr_index h)
 
 /* Where each living edge goes: edges come in the order of their lesser ends. first: as many zeros as there are vertices
  * and one more; it holds where the edges of each end. */
-static void rank_edges(const aqr_polygon_mesh* m, const aqr_index* vertex, aqr_index* first, aqr_index* rank)
+static aqr_status rank_edges(
+  aqr_context* c, const aqr_polygon_mesh* m, const aqr_index* vertex, aqr_index* first, aqr_index* rank)
 {
   for (size_t e = 0; 2 * e < m->n_half_edges; e++)
+  {
+    if (!aqr_worked(c, 1))
+      return AQR_CANCELLED;
     if (aqr_pm_edge_lives(m, (aqr_index)(2 * e)))
       first[lesser_end(m, vertex, e) + 1]++;
+  }
   for (size_t v = 0; v < m->n_vertices; v++)
     first[v + 1] += first[v];
   for (size_t e = 0; 2 * e < m->n_half_edges; e++)
+  {
+    if (!aqr_worked(c, 1))
+      return AQR_CANCELLED;
     if (aqr_pm_edge_lives(m, (aqr_index)(2 * e)))
       rank[e] = first[lesser_end(m, vertex, e)]++;
+  }
+  return AQR_OK;
 }
 
 aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m)
@@ -198,8 +212,10 @@ aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m)
   for (size_t v = 0; v < m->n_vertices; v++)
     if (m->vertices[v].out != AQR_NONE)
       vertex[v] = (aqr_index)nv++;
-  rank_edges(m, vertex, first, rank);
+  AQR_TRY(rank_edges(c, m, vertex, first, rank));
   for (aqr_index h = 0; h < n; h++)
+  {
+    AQR_REQUIRE(aqr_worked(c, 1), AQR_CANCELLED);
     if (aqr_pm_edge_lives(m, h))
     {
       const aqr_half_edge* e = &m->half_edges[h];
@@ -208,16 +224,12 @@ aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m)
       edge_type[rank[h >> 1]] = m->edge_type[h >> 1];
       nh++;
     }
-  for (size_t v = 0; v < m->n_vertices; v++)
-    if (m->vertices[v].out != AQR_NONE)
-    {
-      m->vertices[vertex[v]] = m->vertices[v];
-      m->vertices[vertex[v]].out = renumbered(rank, m->vertices[v].out);
-    }
+  }
   for (size_t f = 0; f < m->n_faces; f++)
     face[f] = AQR_NONE;
   for (aqr_index h = 0; h < nh; h++)
   {
+    AQR_REQUIRE(aqr_worked(c, 1), AQR_CANCELLED);
     aqr_index f = half_edges[h].face;
     if (f == AQR_NONE)
       continue;
@@ -228,6 +240,13 @@ aqr_status aqr_pm_compact(aqr_context* c, aqr_polygon_mesh* m)
     }
     half_edges[h].face = face[f];
   }
+  /* in place, and therefore last: a cancel leaves the mesh as it was */
+  for (size_t v = 0; v < m->n_vertices; v++)
+    if (m->vertices[v].out != AQR_NONE)
+    {
+      m->vertices[vertex[v]] = m->vertices[v];
+      m->vertices[vertex[v]].out = renumbered(rank, m->vertices[v].out);
+    }
 done:
   AQR_DROP(c, vertex, m->n_vertices);
   AQR_DROP(c, first, n_first);
