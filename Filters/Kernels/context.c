@@ -11,7 +11,7 @@ enum
   grain = 1024,
   first_block = 4 * grain, /* elements before the first look at the progress hook */
   most_growth = 4,         /* of a block over the one before */
-  most_unasked = 1 << 16   /* small steps between two looks */
+  most_unasked = 1 << 18   /* small steps between two looks */
 };
 
 static const double block_seconds = 0.02; /* between two looks: short for a cancel, long for threads to be worth it */

@@ -203,7 +203,7 @@ static void find_wide_corners(linker* l)
 
 /* A clean turn is a corner at once. Along the ragged border of a scan, where every other edge turns sharply, turns are
  * judged over a few edges; creases were rid of zigzag when they were found. */
-static void find_corners(linker* l)
+static aqr_status find_corners(linker* l)
 {
   bool seam = aqr_is_seam(l->s, l->walk[0]), any_ragged = false;
   ptrdiff_t n = (ptrdiff_t)l->n_walk;
@@ -218,26 +218,33 @@ static void find_corners(linker* l)
   for (ptrdiff_t i = l->closed ? 0 : 1; i < n; i++)
   {
     vec3 axis;
+    if (!aqr_worked(l->c, 16))
+      return AQR_CANCELLED;
     l->corner[i] = WALK_SMOOTH;
     if (turn_between(l, i - 1, i, i + 1, &axis) > l->corner_angle)
       l->corner[i] = !seam && is_ragged(l, i) ? WALK_RAGGED : WALK_CORNER;
     any_ragged |= l->corner[i] == WALK_RAGGED;
   }
   if (!any_ragged || l->reach < 2 * mean)
-    return;
+    return AQR_OK;
   for (ptrdiff_t i = l->closed ? 0 : 1; i < n; i++)
+  {
+    if (!aqr_worked(l->c, 32))
+      return AQR_CANCELLED;
     l->wide[i] = wide_turn(l, i);
+  }
   find_wide_corners(l);
+  return AQR_OK;
 }
 
 /* ---- chains ---- */
 
 /* Adds edges [begin, end) of the run as a chain. */
-static bool add_chain(linker* l, size_t begin, size_t end, bool closed)
+static aqr_status add_chain(linker* l, size_t begin, size_t end, bool closed)
 {
   aqr_chains* o = l->out;
   if (!AQR_RESERVE(l->c, l->chains, l->chain_capacity, l->n_chains + 1))
-    return false;
+    return AQR_OUT_OF_MEMORY;
   l->chains[l->n_chains++] = (aqr_chain){ l->n_done, end - begin, closed, aqr_is_seam(l->s, l->walk[0]) };
   for (size_t i = begin; i < end; i++)
   {
@@ -247,12 +254,13 @@ static bool add_chain(linker* l, size_t begin, size_t end, bool closed)
     if (i + 1 == end && !closed)
       o->is_node[clean_to(l->s, h)] = 1;
   }
-  return true;
+  return AQR_OK;
 }
 
 /* The whole run through h between branches, cut into chains at its corners. */
-static bool add_run(linker* l, aqr_index h)
+static aqr_status add_run(linker* l, aqr_index h)
 {
+  aqr_status status = AQR_OK;
   aqr_index start = h, g = chain_previous(l, h);
   for (size_t i = 0; g != AQR_NONE && g != h && i < l->n_edges; i++)
   {
@@ -272,7 +280,7 @@ static bool add_run(linker* l, aqr_index h)
     l->walk[l->n_walk++] = g;
     g = chain_next(l, g);
   } while (g != AQR_NONE && g != start && l->n_walk < l->n_edges);
-  find_corners(l);
+  AQR_TRY(find_corners(l));
   size_t begin = 0, n = l->n_walk;
   while (l->closed && begin < n && l->corner[begin] < WALK_CORNER)
     begin++;
@@ -281,11 +289,11 @@ static bool add_run(linker* l, aqr_index h)
   for (size_t i = begin + 1, last = begin + n; i <= last; i++)
     if (i == last || l->corner[i % n] >= WALK_CORNER)
     {
-      if (!add_chain(l, begin, i, false))
-        return false;
+      AQR_TRY(add_chain(l, begin, i, false));
       begin = i;
     }
-  return true;
+done:
+  return status;
 }
 
 aqr_status aqr_chains_build(aqr_context* c, const aqr_surface* s, double corner_angle, aqr_chains* chains)
@@ -305,7 +313,7 @@ aqr_status aqr_chains_build(aqr_context* c, const aqr_surface* s, double corner_
       if (h % (1 << 18) == 0)
         AQR_REQUIRE(aqr_step(c, 0.9), AQR_CANCELLED);
       if (is_listed(s, h) && !l.seen[h] && aqr_is_boundary(s, h) == boundary)
-        AQR_REQUIRE(add_run(&l, h), AQR_OUT_OF_MEMORY);
+        AQR_TRY(add_run(&l, h));
     }
   chains->chains = AQR_NEW(c, aqr_chain, l.n_chains);
   AQR_REQUIRE(chains->chains, AQR_OUT_OF_MEMORY);

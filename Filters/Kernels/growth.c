@@ -9,6 +9,7 @@ enum
   most_steps = 200000,
   most_closing_faces = 400,
   closing_chords = 8, /* of the line's beginning, that its head may close on */
+  step_work = 32,     /* of a step, and of each face that it crosses */
   in_place = 48       /* steps after which a line that has not got away turns around a point of the field */
 };
 
@@ -168,8 +169,6 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
   const size_t most_samples = s->n_faces + 1000;
   for (int i = 0; i < most_steps && t->travelled < longest_line && t->n_samples < most_samples && !t->lost; i++)
   {
-    if (i % 256 == 255)
-      AQR_REQUIRE(aqr_step(c, 0), AQR_CANCELLED);
     double along, across;
     aqr_sizing_at(s, g->field, g->sizing, t->chart.face, aqr_tracer_direction(t), &along, &across);
     double scale = aqr_sizing_scale(s, g->sizing, t->chart.face);
@@ -189,7 +188,9 @@ static aqr_status grow_one_way(aqr_context* c, aqr_grower* g, double sign, aqr_l
       seen = from;
     }
     aqr_advance result;
+    size_t crossed = t->crossed;
     AQR_TRY(aqr_tracer_step(c, t, &step, shortest_step * least, longest_step * least, &result));
+    AQR_REQUIRE(aqr_worked(c, step_work * (1 + t->crossed - crossed)), AQR_CANCELLED);
     if (result == AQR_AT_BORDER)
     {
       aqr_index edge = t->n_samples ? t->samples[t->n_samples - 1].edge : AQR_NONE;

@@ -4,6 +4,11 @@
 
 #include <string.h>
 
+enum
+{
+  entry_work = 8 /* of a face of a cell, with the chords in it */
+};
+
 static const double detour =
   3; /* times its distance: the way back along a line to where the line itself is a neighbour */
 static const double family_cosine2 = 0.5; /* of pi / 4, squared */
@@ -66,7 +71,6 @@ static bool inside(const aqr_probe* probe, vec3 p)
 static aqr_status begin(aqr_context* c, aqr_pcell* cell, const aqr_probe* probe)
 {
   const aqr_surface* s = cell->surface;
-  cell->n_entries = 0;
   if (++cell->query == 0) /* the counter came round: no stamp of an earlier turn may be taken for a new one */
   {
     memset(cell->stamp, 0, s->n_faces * sizeof *cell->stamp);
@@ -139,6 +143,7 @@ aqr_status aqr_pcell_nearest(
 {
   double nearest2 = probe->radius * probe->radius;
   *found = (aqr_near){ AQR_NONE, AQR_NONE, 0 };
+  cell->n_entries = 0;
   cell->queries++;
   look(lines, probe->face, probe, &nearest2, found);
   aqr_status status = ends(probe, found) ? AQR_OK : begin(c, cell, probe);
@@ -149,5 +154,7 @@ aqr_status aqr_pcell_nearest(
       status = extend(c, cell, probe, cell->entries[i]);
   }
   found->distance = sqrt(nearest2);
+  if (status == AQR_OK && !aqr_worked(c, entry_work * (1 + cell->n_entries)))
+    status = AQR_CANCELLED;
   return status;
 }

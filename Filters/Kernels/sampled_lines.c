@@ -29,14 +29,38 @@ static aqr_status add_parent(aqr_sampler* m)
   return AQR_OK;
 }
 
+/* The nearest samples before and after the i-th of a chain that are w away along it, or its ends: halved, since a fine
+ * border can have most of its samples within w. */
+static void find_window(const aqr_sample* a, size_t n, size_t i, double w, size_t* before, size_t* after)
+{
+  size_t low = 0, high = i;
+  while (low < high)
+  {
+    size_t middle = (low + high + 1) / 2;
+    if ((double)(a[i].arc - a[middle].arc) < w)
+      high = middle - 1;
+    else
+      low = middle;
+  }
+  *before = low;
+  low = i;
+  high = n - 1;
+  while (low < high)
+  {
+    size_t middle = (low + high) / 2;
+    if ((double)(a[middle].arc - a[i].arc) < w)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  *after = low;
+}
+
 /* Curvature of a chain at its i-th sample as seen at the scale `w`: of the circle through three of its points. */
 static double chain_curvature(const aqr_sample* a, size_t n, size_t i, double w)
 {
-  size_t j = i, k = i;
-  while (j > 0 && (double)(a[i].arc - a[j].arc) < w)
-    j--;
-  while (k + 1 < n && (double)(a[k].arc - a[i].arc) < w)
-    k++;
+  size_t j, k;
+  find_window(a, n, i, w, &j, &k);
   vec3 u = v3_sub(a[i].p, a[j].p), v = v3_sub(a[k].p, a[i].p), e = v3_sub(a[k].p, a[j].p);
   double area = v3_norm(v3_cross(u, v)), product = v3_norm(u) * v3_norm(v) * v3_norm(e);
   return product > 0 ? 2 * area / product : 0;
@@ -46,11 +70,12 @@ aqr_status aqr_sample_chain(aqr_sampler* m, const aqr_chains* chains, const aqr_
 {
   const aqr_surface* s = m->s;
   size_t n = chain->count + 1;
+  aqr_status status = AQR_OK;
   aqr_sample* a = AQR_NEW0(m->c, aqr_sample, n);
-  if (!a)
-    return AQR_OUT_OF_MEMORY;
+  AQR_REQUIRE(a, AQR_OUT_OF_MEMORY);
   for (size_t i = 0; i < n; i++)
   {
+    AQR_REQUIRE(aqr_worked(m->c, 4), AQR_CANCELLED);
     aqr_index h = chains->half_edges[chain->first + (i + 1 < n ? i : i - 1)];
     a[i].p = aqr_point(s, i + 1 < n ? aqr_from(s, h) : aqr_to(s, h));
     a[i].edge = h;
@@ -61,6 +86,7 @@ aqr_status aqr_sample_chain(aqr_sampler* m, const aqr_chains* chains, const aqr_
   double sigma = 0;
   for (size_t i = 0; i + 1 < n; i++)
   {
+    AQR_REQUIRE(aqr_worked(m->c, 16), AQR_CANCELLED);
     vec3 d = v3_sub(a[i + 1].p, a[i].p);
     double length = v3_norm(d), along, across;
     aqr_sizing_at(s, m->field, m->sizing, a[i].face, v3_unit(d), &along, &across);
@@ -89,9 +115,11 @@ aqr_status aqr_sample_chain(aqr_sampler* m, const aqr_chains* chains, const aqr_
     .partner = { AQR_NONE, AQR_NONE } };
   if (chain->closed)
     line.ends[0] = line.ends[1] = AQR_END_LOOP;
-  aqr_status status = aqr_lines_add(m->c, m->lines, s, &line, a);
+  AQR_TRY(aqr_lines_add(m->c, m->lines, s, &line, a));
+  AQR_TRY(add_parent(m));
+done:
   AQR_DROP(m->c, a, n);
-  return status == AQR_OK ? add_parent(m) : status;
+  return status;
 }
 
 /* The chain line and the position on it, in spacings, of a point on a boundary or seam edge. */
@@ -164,6 +192,7 @@ static aqr_status mark_crossings(aqr_sampler* m, aqr_index id)
     {
       const aqr_sample* b = &l->samples[k];
       aqr_index other = b->line;
+      AQR_REQUIRE(aqr_worked(m->c, 1), AQR_CANCELLED);
       if (l->lines[other].is_chain || b == a || !aqr_chords_cross(m->s, a->face, a, a + 1, b, b + 1))
         continue;
       AQR_TRY(add_mark(m, id, crossing_at(a, b)));

@@ -220,19 +220,30 @@ static uint32_t scramble(uint32_t x)
   return x;
 }
 
+typedef struct levels
+{
+  const aqr_sampler* m;
+  uint8_t* of; /* each face */
+} levels;
+
+static void find_levels(void* data, size_t begin, size_t end)
+{
+  levels* l = data;
+  for (size_t f = begin; f < end; f++)
+    l->of[f] = (uint8_t)level(l->m, (aqr_index)f);
+}
+
 /* Faces in order of their level, those of one level in a fixed random order. */
 static aqr_status order_faces(aqr_sampler* m, aqr_index* order)
 {
   aqr_context* c = m->c;
+  aqr_status status = AQR_OK;
   size_t n = m->s->n_faces, count[score_levels + 1] = { 0 };
   uint8_t* of = AQR_NEW(c, uint8_t, n);
-  if (!of)
-    return AQR_OUT_OF_MEMORY;
-  for (aqr_index f = 0; f < n; f++)
-  {
-    of[f] = (uint8_t)level(m, f);
+  AQR_REQUIRE(of, AQR_OUT_OF_MEMORY);
+  AQR_TRY(aqr_parallel(c, n, find_levels, &(levels){ m, of }, 0, 0));
+  for (size_t f = 0; f < n; f++)
     count[of[f] + 1]++;
-  }
   for (int l = 0; l < score_levels; l++)
     count[l + 1] += count[l];
   size_t start[score_levels];
@@ -242,13 +253,15 @@ static aqr_status order_faces(aqr_sampler* m, aqr_index* order)
   for (int l = 0; l < score_levels; l++)
     for (size_t i = count[l + 1]; i > count[l] + 1; i--)
     {
+      AQR_REQUIRE(aqr_worked(c, 1), AQR_CANCELLED);
       size_t j = count[l] + scramble((uint32_t)i + m->options->seed * 0x9e3779b9u) % (i - count[l]);
       aqr_index f = order[i - 1];
       order[i - 1] = order[j];
       order[j] = f;
     }
+done:
   AQR_DROP(c, of, n);
-  return AQR_OK;
+  return status;
 }
 
 /* Marks the faces connected to f whose centre is within `distance`: no seed of the same round is needed there. */
@@ -264,6 +277,8 @@ static aqr_status cover(
   (*stack)[n++] = f;
   while (n)
   {
+    if (!aqr_worked(m->c, 8))
+      return AQR_CANCELLED;
     aqr_index g = (*stack)[--n];
     for (unsigned i = 0; i < 3; i++)
     {
@@ -296,10 +311,10 @@ static aqr_status cover_surface(aqr_sampler* m)
   for (size_t i = 0; i < s->n_faces; i++)
   {
     aqr_index f = order[i];
+    if (i % 1024 == 0)
+      AQR_REQUIRE(aqr_step(c, 0.9 * (double)i / (double)s->n_faces), AQR_CANCELLED);
     if (covered[f])
       continue;
-    if (i % 256 == 0)
-      AQR_REQUIRE(aqr_step(c, 0.9 * (double)i / (double)s->n_faces), AQR_CANCELLED);
     vec3 n = v3_unit(aqr_face_cross(s, f));
     vec3 d = aqr_cross(m->field, s->corner[3 * f]);
     vec3 p = { 0, 0, 0 };

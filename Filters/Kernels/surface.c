@@ -395,11 +395,12 @@ static aqr_status close_loops(builder* b)
 {
   const aqr_surface* s = b->s;
   size_t n = 3 * s->n_faces;
+  aqr_status status = AQR_OK;
   uint8_t* seen = AQR_NEW0(b->c, uint8_t, n);
-  if (!seen)
-    return AQR_OUT_OF_MEMORY;
+  AQR_REQUIRE(seen, AQR_OUT_OF_MEMORY);
   for (aqr_index h = 0; h < n; h++)
   {
+    AQR_REQUIRE(aqr_worked(b->c, 1), AQR_CANCELLED);
     if (seen[h] || !aqr_is_boundary(s, h))
       continue;
     /* every point has one fan: the border goes on along the clockwise-most half-edge of the next point */
@@ -414,8 +415,9 @@ static aqr_status close_loops(builder* b)
     for (aqr_index k = h; !seen[k]; k = s->fan[aqr_to(s, k)])
       seen[k] = 1;
   }
+done:
   AQR_DROP(b->c, seen, n);
-  return AQR_OK;
+  return status;
 }
 
 aqr_status aqr_surface_split_fans(aqr_context* c, aqr_surface* s)

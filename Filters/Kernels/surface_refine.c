@@ -140,6 +140,7 @@ aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edg
     for (size_t i = 0; i < r.n && s->n_faces < limit; i++) /* with those listed on the way */
     {
       aqr_index h = r.list[i];
+      AQR_REQUIRE(aqr_worked(c, 4), AQR_CANCELLED);
       if (length2(s, h) <= longest2)
         continue;
       size_t faces = s->n_faces;

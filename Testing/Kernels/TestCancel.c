@@ -4,6 +4,9 @@
 
 #include "cells.h"
 #include "coarsen.h"
+#include "feature_graph.h"
+#include "model.h"
+#include "sampler.h"
 #include "sort.h"
 
 typedef struct asked
@@ -30,7 +33,7 @@ AQR_TEST(small_steps_ask_once_in_many)
   size_t steps = 0;
   while (aqr_worked(&c, 2))
     steps++;
-  CHECK(a.times == 2 && steps > 1000 && steps < 1000000);
+  CHECK(a.times == 2 && steps > 1000 && steps < 10000000);
   a = (asked){ 0, 1000 };
   for (size_t i = 0; i < steps; i++)
     CHECK(aqr_worked(&c, 50));
@@ -69,7 +72,7 @@ AQR_TEST(what_is_sorted_with_pauses_is_in_the_same_order)
     CHECK(aqr_sort(&c, list, n, sizeof *list, by_key_and_place) == AQR_OK && c.bytes == 0);
     qsort(wanted, n, sizeof *wanted, by_key_and_place);
     CHECK(memcmp(list, wanted, (n + 1) * sizeof *list) == 0);
-    CHECK(a.times >= n / 20000);
+    CHECK(a.times >= n / 40000);
     for (size_t allowed = 0; allowed < a.times; allowed = 2 * allowed + 1)
     {
       asked fewer = { 0, allowed };
@@ -116,6 +119,38 @@ AQR_TEST(coarsening_asks_all_along)
   }
 }
 
+static vec3 place_on_band(double u, double v)
+{
+  double turn = 2 * acos(-1) * u;
+  return v3(cos(turn), sin(turn), 1e-3 * v);
+}
+
+AQR_TEST(long_borders_are_linked_and_sampled_with_questions_in_between)
+{
+  const size_t n = 60000;
+  model e = model_sizing(shape_grid(n, 1, true, false, 0, 1, place_on_band), 0.01, 1, NULL, 0.05);
+  aqr_chains chains = { 0 };
+  asked linked = { 0, SIZE_MAX }, sampled = { 0, SIZE_MAX };
+  e.c.hooks = (aqr_hooks){ .user = &linked, .progress = ask };
+  CHECK(aqr_chains_build(&e.c, &e.s, 45, &chains) == AQR_OK);
+  CHECK(chains.n_chains == 2 && chains.chains[0].count == n);
+  aqr_lines lines = { 0 };
+  aqr_sampling_options options = { .tolerance = 1e-3, .boundary_lines = true };
+  aqr_sampler m = { &e.c, &e.s, &e.f, &e.z, &options, &lines, .goal = INFINITY };
+  CHECK(aqr_lines_init(&e.c, &e.s, &lines) == AQR_OK);
+  e.c.hooks.user = &sampled;
+  CHECK(aqr_sample_chain(&m, &chains, &chains.chains[0]) == AQR_OK);
+  printf("asked %zu and %zu times\n", linked.times, sampled.times);
+  CHECK(linked.times >= n / 10000 && sampled.times >= n / 20000);
+  sampled = (asked){ 0, 0 };
+  CHECK(aqr_sample_chain(&m, &chains, &chains.chains[1]) == AQR_CANCELLED && lines.n_lines == 1);
+  aqr_lines_free(&e.c, &lines);
+  AQR_DROP(&e.c, m.parents, m.parent_capacity);
+  aqr_chains_free(&e.c, &chains);
+  e.c.hooks = (aqr_hooks){ 0 };
+  model_free(&e);
+}
+
 AQR_TEST(a_mesh_whose_compaction_is_cancelled_is_as_before)
 {
   aqr_context plain = { 0 };
@@ -136,7 +171,7 @@ AQR_TEST(a_mesh_whose_compaction_is_cancelled_is_as_before)
       break;
     CHECK(m.n_half_edges == n && c.bytes == 0);
   }
-  CHECK(allowed >= 5 && m.n_half_edges < n);
+  CHECK(allowed >= 3 && m.n_half_edges < n);
   aqr_polygon_mesh_free(&plain, &m);
 }
 
