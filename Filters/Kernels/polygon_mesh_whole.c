@@ -65,7 +65,7 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
   side* sides = AQR_NEW(c, side, n);
   aqr_index* half_edge = AQR_NEW(c, aqr_index, n);
   AQR_REQUIRE(sides && half_edge, AQR_OUT_OF_MEMORY);
-  AQR_REQUIRE(n < AQR_NONE / 2 - base, AQR_TOO_LARGE);
+  AQR_REQUIRE(n < (AQR_NONE - base) / 2, AQR_TOO_LARGE);
   for (size_t f = 0; f < n_faces; f++)
     for (size_t i = offsets[f]; i < offsets[f + 1]; i++)
     {

@@ -128,6 +128,8 @@ aqr_status aqr_surface_refine(aqr_context* c, aqr_surface* s, double longest_edg
   refiner r = { .c = c, .s = s };
   aqr_status status = AQR_OK;
   size_t before = s->n_points, limit = most_growth * s->n_faces + free_faces;
+  if (limit > AQR_SEAM / 3 - 2) /* half-edges have 31 bits, and one edge more gives two faces */
+    limit = AQR_SEAM / 3 - 2;
   double least2 = longest_edge * longest_edge;
   AQR_TRY(aqr_parallel(c, 3 * s->n_faces, find_longest, &r, 0.85, 0.9));
   double longest2 = r.longest2;

@@ -166,4 +166,15 @@ AQR_TEST(edges_and_faces_do_not_lie_far_from_their_vertices_in_memory)
   CHECK(c.bytes == 0);
 }
 
+AQR_TEST(a_mesh_with_no_half_edges_left_takes_no_polygon)
+{
+  const size_t offsets[2] = { 0, 3 };
+  const aqr_index corner[3] = { 0, 1, 2 };
+  const aqr_vertex v[3] = { 0 };
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { .n_half_edges = AQR_NONE - 3 };
+  CHECK(aqr_pm_append(&c, &m, v, 3, offsets, 1, corner) == AQR_TOO_LARGE);
+  CHECK(m.n_half_edges == AQR_NONE - 3 && c.bytes == 0);
+}
+
 AQR_TEST_MAIN
