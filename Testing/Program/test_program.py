@@ -10,6 +10,7 @@ import math
 import os
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -154,6 +155,16 @@ class Program(unittest.TestCase):
             self.assertGreaterEqual(stage["seconds"], 0)
             self.assertGreaterEqual(stage["peak_bytes"], stage["end_bytes"])
 
+    def test_any_file_name_gives_a_report_that_is_json(self):
+        for name in (b'a\ttab\x01 and a "quote" \\.ply', "\u00e9\U0001f600\x7f.ply".encode(), b"\xe9\xff\xed\xa0\x80.ply"):
+            file = os.path.join(self.folder.name.encode(), name)
+            shutil.copyfile(self.torus, file)
+            run = self.run_program(file, self.path("out.vtp"), "--report", self.path("r.json"))
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
+            with open(self.path("r.json"), encoding="utf-8") as f:
+                said = os.path.basename(json.load(f)["input"])
+            self.assertIn(said.encode("utf-8"), (name, name.decode("latin-1").encode("utf-8")))
+
     def test_defects_are_warned_of_once_in_one_line(self):
         write_ply(self.path("flat.ply"), [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (1, 3, 2), (0, 0, 1)])
         run = self.run_program(self.path("flat.ply"), self.path("out.obj"))
@@ -280,6 +291,13 @@ class Program(unittest.TestCase):
                     end = data.index(b" ", last_face + 3)  # with three corners left it would be a whole file
                 with self.subTest(name=name, share=share):
                     self.expect_refusal("short." + name, data[:end])
+
+    def test_a_header_that_ends_with_the_file_announces_too_much(self):
+        head = b"ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty uchar x\nend_header"
+        for n in (1, 100, 200):
+            with open(self.path("head.ply"), "wb") as f:
+                f.write(head % n)
+            self.expect_failure(1, ["ends too early"], self.path("head.ply"), self.path("out.vtp"))
 
     def test_files_that_lie_about_what_they_hold_are_named(self):
         self.write("out.vtp", "keep me")

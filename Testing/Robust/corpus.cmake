@@ -2,7 +2,8 @@
 # The runner over a folder of surfaces; after the filter, which it links.
 set(robust "${CMAKE_CURRENT_LIST_DIR}")
 set(program "${PROJECT_SOURCE_DIR}/Examples/Cxx/aqr-remesh")
-add_executable(corpus "${robust}/corpus.cxx" "${program}/Announced.cxx" "${program}/Files.cxx")
+add_executable(corpus
+  "${robust}/corpus.cxx" "${program}/Announced.cxx" "${program}/Files.cxx" "${program}/Text.cxx")
 set_target_properties(corpus PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/Testing/Robust")
 target_compile_features(corpus PRIVATE cxx_std_17)
 target_include_directories(corpus PRIVATE "${program}")

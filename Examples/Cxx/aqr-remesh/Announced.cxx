@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -275,7 +274,11 @@ void CheckPly(const std::string& file)
   }
   else
   {
-    CheckBinary(stream, header, SizeOf(file) - static_cast<std::uint64_t>(stream.tellg()));
+    // No place is told where the header's last line ends with the file.
+    const auto at = static_cast<std::streamoff>(stream.tellg());
+    const std::uint64_t size = SizeOf(file);
+    const std::uint64_t begin = at < 0 ? size : static_cast<std::uint64_t>(at);
+    CheckBinary(stream, header, begin < size ? size - begin : 0);
   }
 }
 

@@ -36,7 +36,6 @@ vtkSmartPointer<vtkPolyData> WithColors(vtkPolyData* mesh)
   surface->SetPolys(mesh->GetPolys());
   vtkNew<vtkUnsignedCharArray> colors;
   colors->SetNumberOfComponents(3);
-  vtkNew<vtkIdList> corners;
   vtkCellArray* polys = mesh->GetPolys();
   for (vtkIdType face = 0; face < polys->GetNumberOfCells(); ++face)
   {

@@ -3,6 +3,7 @@
 #include "Files.h"
 #include "Options.h"
 #include "Picture.h"
+#include "Text.h"
 
 #include "vtkAnisotropicQuadRemesher.h"
 #include "vtkCallbackCommand.h"
@@ -121,17 +122,6 @@ void CheckOutputs(const Options& options)
       throw FileError(options.Picture, "cannot be rendered: there is no X display (try xvfb-run -a)");
     }
   }
-}
-
-//------------------------------------------------------------------------------
-std::string JsonText(const std::string& text)
-{
-  std::string quoted = "\"";
-  for (const char c : text)
-  {
-    quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  }
-  return quoted + "\"";
 }
 
 //------------------------------------------------------------------------------
