@@ -65,7 +65,7 @@ extern "C"
     AQR_NON_FINITE_POINT,   /**< a coordinate used by a triangle is NaN or infinite */
     AQR_INDEX_OUT_OF_RANGE, /**< a triangle or a locked edge names a point that does not exist */
     AQR_DEGENERATE_INPUT,   /**< no triangle of positive area: all points coincident or collinear */
-    AQR_TOO_LARGE,          /**< more triangles than the index type can hold */
+    AQR_TOO_LARGE,          /**< more points, triangles, or samples of lines than the index type can hold */
     AQR_BAD_OPTION,         /**< an option is NaN or outside its range; see aqr_remesher_message() */
     AQR_NO_INPUT,           /**< run before set_input */
     AQR_INTERNAL            /**< an invariant of the library did not hold: a defect, please report it */
@@ -297,7 +297,8 @@ extern "C"
   /** Copies what it needs; the arrays may go afterwards. Drops every cached stage. */
   AQR_API aqr_status aqr_remesher_set_input(aqr_remesher* remesher, const aqr_input* input);
 
-  /** Replaces the hooks but for the allocator, which stays. */
+  /** Replaces the hooks but for the allocator, which stays. With an allocator `user` stays too, since it is handed to
+   * every hook: what the new hooks are to see has to be reached from it. */
   AQR_API void aqr_remesher_set_hooks(aqr_remesher* remesher, const aqr_hooks* hooks);
 
   /** Runs the stages whose parameters changed since the last run, and all that follow them. */

@@ -5,7 +5,7 @@
 
 enum
 {
-  most_starts = 64 /* chains that begin at a corner, both sides counted */
+  most_starts = 64 /* ways along chains from a corner: on either side of every seam, one way each. More are left out */
 };
 
 static const double first_reach = 4; /* times the distance between the ends of a run: how far the other is looked for */
@@ -61,18 +61,19 @@ static spots spots_of(const aqr_surface* s, const aqr_place* at)
     if (at->bary[i] > at->bary[largest])
       largest = i;
   }
-  aqr_index first = 3 * at->face + largest, h = first;
+  const aqr_index first = 3 * at->face + largest;
+  aqr_index h = first;
   r.corner = s->clean[aqr_from(s, first)];
   do
   {
     add(s, &r, h);
     h = aqr_any_twin(s, aqr_prev(h));
   } while (h != AQR_NONE && h != first);
-  for (h = first; h != AQR_NONE && !aqr_is_boundary(s, h);)
+  if (h == first) /* all the way around */
+    return r;
+  for (h = first; !aqr_is_boundary(s, h);)
   {
     h = aqr_next(aqr_any_twin(s, h));
-    if (h == first)
-      break;
     add(s, &r, h);
   }
   return r;

@@ -41,11 +41,12 @@ bool aqr_trim(aqr_context* c, void** p, size_t* capacity, size_t need, size_t si
 #define AQR_TRIM(c, p, capacity, need) aqr_trim(c, (void**)&(p), &(capacity), need, sizeof *(p))
 
 /* Reports that `fraction` of the running stage is done; false when the caller wants to stop.
- * Cheap enough for every few thousand steps of a loop. Only on the thread that called run. */
+ * Costs what the caller's hook costs, so once in some milliseconds: aqr_worked() sees to that. Only
+ * on the thread that called set_input or run. */
 bool aqr_step(aqr_context* c, double fraction);
 
 /* `work` more small steps are done, of some ten nanoseconds each; false when the caller wants to stop. Asks the hook
- * once in many steps, so that any loop may call it. Only on the thread that called run. */
+ * once in many steps, so that any loop may call it. On the same thread. */
 bool aqr_worked(aqr_context* c, size_t work);
 
 /* Of a clock that goes on; only for figures and for how often to look at the hooks, never for results. */

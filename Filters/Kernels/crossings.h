@@ -8,7 +8,8 @@
 /* Crossings along chords. */
 typedef struct aqr_crossing_order
 {
-  aqr_index* first; /* per sample: its chord's crossings begin here in `on`; n_samples + 1 */
+  aqr_index* first; /* per sample: its chord's crossings begin here in `on`, and end where the next one's begin;
+                       n_samples + 2, of which the last serves only while they are listed */
   aqr_index* on;    /* crossings along chords, in order */
   size_t n_samples, n_on;
 } aqr_crossing_order;

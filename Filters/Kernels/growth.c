@@ -14,13 +14,13 @@ enum
 };
 
 static const double stop_distance = 0.3; /* of the spacing: nearer than this to a line of its family a line ends */
-static const double longest_line = 20;   /* diagonals */
-static const double longest_step = 0.5;  /* of the smaller spacing */
-static const double shortest_step = 0.1;
 static const double most_stop_distance =
   0.75; /* ... of a line that comes from where more points are asked for: it does not go on between lines there */
-static const double query_every = 0.6; /* of the stop distance; farther apart along stretched cells */
-static const double loop_start = 3;    /* stop distances from the seed: a line that comes back to there closes */
+static const double longest_line = 20;   /* diagonals */
+static const double longest_step = 0.5;  /* of the smaller spacing */
+static const double shortest_step = 0.1; /* likewise */
+static const double query_every = 0.6;   /* of the stop distance; farther apart along stretched cells */
+static const double loop_start = 3;      /* stop distances from the seed: a line that comes back to there closes */
 
 aqr_status aqr_grower_init(aqr_context* c, const aqr_surface* s, const aqr_field* field, const aqr_sizing* sizing,
   aqr_lines* lines, aqr_grower* g)

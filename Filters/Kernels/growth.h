@@ -29,10 +29,11 @@ void aqr_grower_free(aqr_context* c, aqr_grower* g);
 aqr_status aqr_grow_allowed(
   aqr_context* c, aqr_grower* g, aqr_index face, vec3 p, vec3 direction, double distance, bool* allowed);
 
-/* Grows a line through a place in both directions. */
+/* Grows a line through a place in both directions, along the branch of the field nearest to `direction`. */
 aqr_status aqr_grow_inside(aqr_context* c, aqr_grower* g, const aqr_place* at, vec3 direction);
 
-/* Grows a line from a point of a boundary or seam half-edge into its face. */
-aqr_status aqr_grow_from_border(aqr_context* c, aqr_grower* g, aqr_index h, double t, vec3 direction);
+/* Grows a line from fraction `at` of a boundary or seam half-edge into its face; none where the branch of the field
+ * nearest to `direction` turns more than 60 degrees away from it. */
+aqr_status aqr_grow_from_border(aqr_context* c, aqr_grower* g, aqr_index h, double at, vec3 direction);
 
 #endif

@@ -351,7 +351,7 @@ static aqr_index first_around(const aqr_surface* s, aqr_index point)
   }
 }
 
-/* Links the spokes [first, end) of one node in the order in which the surface's fan meets their edges. */
+/* Links the n spokes of one node in the order in which the surface's fan meets their edges. */
 static aqr_status link_corner(aqr_network_builder* b, const spoke* spokes, size_t n)
 {
   const aqr_surface* s = b->s;

@@ -49,7 +49,8 @@ typedef struct aqr_network
   size_t n_samples;
 } aqr_network;
 
-/* chain_tolerance: chains get nodes of their own until their chords depart from them by no more (scaled units). */
+/* Chains get nodes of their own until their chords depart from them by no more than chain_tolerance where they are
+ * creases, boundary_tolerance where they are borders (scaled units). */
 aqr_status aqr_network_build(aqr_context* c, const aqr_surface* s, const aqr_lines* lines, const aqr_chains* chains,
   double chain_tolerance, double boundary_tolerance, aqr_network* net);
 void aqr_network_free(aqr_context* c, aqr_network* net);

@@ -115,15 +115,15 @@ static bool farthest(
   return found;
 }
 
-/* Adds stops at samples in [low, high) until the chords between p and q keep the tolerance (Douglas and Peucker), with
- * the stack of open stretches held by the caller. */
+/* Adds stops at samples in [low, high) until the chords between p and q keep the tolerance (Douglas and
+ * Peucker). */
 static aqr_status refine(
   aqr_network_builder* b, aqr_index chain, aqr_index low, aqr_index high, vec3 p, vec3 q, double tolerance)
 {
   enum
   {
-    depth =
-      128 /* deeper only for chains of more than 2^128 samples when halved; stretches beyond are left as they are */
+    depth = 64 /* of each two stretches the shorter is taken first: what waits is never more than there are halvings of
+                  all indices, and one */
   };
   struct
   {
@@ -146,7 +146,7 @@ static aqr_status refine(
     if (status != AQR_OK)
       return status;
     vec3 m = b->l->samples[at].p;
-    bool left_longer = at - lo > hi - at; /* the longer half first, so that the stack stays logarithmic */
+    bool left_longer = at - lo > hi - at; /* the longer half first, so that it waits */
     for (unsigned i = 0; i < 2; i++)
     {
       bool left = (i == 0) == left_longer;

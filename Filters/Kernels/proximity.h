@@ -27,8 +27,8 @@ typedef struct aqr_pcell
 aqr_status aqr_pcell_init(aqr_context* c, const aqr_surface* s, aqr_pcell* cell);
 void aqr_pcell_free(aqr_context* c, aqr_pcell* cell);
 
-/* What a query looks for: segments nearer than the radius that run within a quarter right angle of
- * a direction. */
+/* What a query finds: of the segments nearer than the radius that run within half a right angle of a direction, or of
+ * its opposite, the nearest. */
 typedef struct aqr_near
 {
   aqr_index line, sample; /* AQR_NONE: nothing found */

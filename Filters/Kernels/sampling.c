@@ -264,7 +264,8 @@ done:
   return status;
 }
 
-/* Marks the faces connected to f whose centre is within `distance`: no seed of the same round is needed there. */
+/* Marks f and the faces reached from it over edges that end within `distance` of its first corner: no seed of the same
+ * round is needed there. */
 static aqr_status cover(
   aqr_sampler* m, uint8_t* covered, aqr_index** stack, size_t* capacity, aqr_index f, double distance)
 {

@@ -16,7 +16,7 @@
 typedef struct aqr_surface
 {
   size_t n_points, n_faces;
-  size_t n_clean;     /* cleaned points before sectors were split off (and before nothing else) */
+  size_t n_clean;     /* cleaned points: those there were before creases cut sectors off */
   double* points;     /* 3 * n_points; bounding box diagonal 1, centred at 0 */
   aqr_index* corner;  /* 3 * n_faces: point at the start of each half-edge */
   aqr_index* twin;    /* 3 * n_faces: AQR_NONE at a boundary, AQR_SEAM | h over a seam, else h */

@@ -199,8 +199,7 @@ bool aqr_tracer_align(aqr_tracer* t)
   return !t->isotropic;
 }
 
-/* The total angle around an interior vertex from half-edge `from`, and the angle at which each
- * half-edge leaves. */
+/* The angle of h's face at the start of h. */
 static double corner_angle(const aqr_surface* s, aqr_index h)
 {
   vec3 o = aqr_point(s, aqr_from(s, h));
@@ -305,7 +304,7 @@ static aqr_status pass_vertex(
 
 /* The edge through which a ray from x along d leaves the chart's triangle: its start lies to the
  * right of the ray, its end to the left. A point on the border of the triangle may see its own
- * edge; `entry` (3 for none) is not considered unless the ray points back out of it. */
+ * edge: of those that qualify the one farthest ahead counts. 3 where rounding leaves none. */
 static unsigned exit_edge(const aqr_chart* chart, aqr_complex x, aqr_complex d, double side[3])
 {
   for (unsigned i = 0; i < 3; i++)

@@ -33,7 +33,8 @@ vtkSmartPointer<vtkPolyData> ReadSurface(const std::string& file, Complaints& co
 // Throws FileError unless the file has one of the extensions and can be created where it should be.
 void CheckOutput(const std::string& file, const std::vector<std::string>& extensions);
 
-// Output files appear under their own names all together at Commit(), or not at all.
+// Output files appear under their own names at Commit(), once all are written; those left without a name go with this.
+// Should one not get its name then, those before it have theirs.
 class OutputFiles
 {
 public:
