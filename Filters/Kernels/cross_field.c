@@ -368,7 +368,6 @@ aqr_status aqr_cross_field(
   j.to = j.z[1];
   AQR_TRY(propagate(c, &j));
   memcpy(j.z[1], j.z[0], s->n_points * sizeof *j.z[0]);
-  j.from = j.z[0];
   for (int i = 0; i < sweeps; i++)
   {
     j.from = j.z[i % 2];

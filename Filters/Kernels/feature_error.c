@@ -4,7 +4,6 @@
 #include "morton.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum
 {

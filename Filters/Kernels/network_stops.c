@@ -3,7 +3,6 @@
 #include "network_builder.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* A stop at the start of a sample is before all others of it. */
 aqr_status aqr_add_stop(aqr_network_builder* b, aqr_index chain, aqr_index sample, double t, aqr_index* id)

@@ -22,8 +22,6 @@ aqr_vertex aqr_middle(const aqr_polygon_mesh* m, aqr_index h)
   aqr_vertex r = *a;
   r.position = v3_scale(v3_add(a->position, b->position), 0.5);
   r.normal = v3_unit_or(v3_add(a->normal, b->normal), a->normal);
-  if (!(v3_norm2(r.normal) > 0))
-    r.normal = a->normal;
   r.size = 0.5 * (a->size + b->size);
   r.out = AQR_NONE;
   r.kind = m->edge_type[h >> 1] == AQR_LINE_BOUNDARY  ? AQR_VERTEX_BOUNDARY

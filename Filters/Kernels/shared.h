@@ -6,7 +6,6 @@
 #include "aqr.h"
 
 #include <stdatomic.h>
-#include <stdbool.h>
 
 typedef _Atomic(aqr_index) aqr_shared_index;
 typedef _Atomic(double) aqr_shared_double;

@@ -3,8 +3,6 @@
 #include "shared.h"
 #include "surface.h"
 
-#include <string.h>
-
 enum
 {
   most_rounds = 400,

@@ -111,22 +111,21 @@ typedef struct corner
   bool at_plane;
 } corner;
 
-static bool add_face(cutter* w, const corner* p, unsigned a, unsigned b, unsigned last, aqr_index source)
+static bool add_face(cutter* w, const corner p[3], aqr_index source)
 {
   aqr_surface* t = w->half;
-  const corner* q[3] = { &p[a], &p[b], &p[last] };
   if (!aqr_surface_reserve_faces(w->c, t, t->n_faces + 1))
     return false;
   for (unsigned k = 0; k < 3; k++)
   {
     size_t h = 3 * t->n_faces + k;
-    t->corner[h] = q[k]->v;
+    t->corner[h] = p[k].v;
     t->twin[h] = AQR_NONE;
-    w->at_plane[h] = q[k]->at_plane;
-    if (q[k]->edge == AQR_NONE)
+    w->at_plane[h] = p[k].at_plane;
+    if (p[k].edge == AQR_NONE)
       continue;
-    w->piece[q[k]->edge] = (aqr_index)h;
-    w->crease[h] = w->is_crease[q[k]->edge];
+    w->piece[p[k].edge] = (aqr_index)h;
+    w->crease[h] = w->is_crease[p[k].edge];
   }
   t->source[t->n_faces++] = source;
   return true;
@@ -154,7 +153,7 @@ static bool cut_face(cutter* w, aqr_index f)
     if (p[k].v == AQR_NONE)
       return false;
   if (n == 3)
-    return add_face(w, p, 0, 1, 2, s->source[f]);
+    return add_face(w, p, s->source[f]);
   if (n < 4)
     return true;
   const aqr_surface* t = w->half;
@@ -165,7 +164,7 @@ static bool cut_face(cutter* w, aqr_index f)
   corner first = p[(i + 2) % 4], second = p[i];
   corner one[3] = { p[i], p[(i + 1) % 4], first }, two[3] = { second, p[(i + 2) % 4], p[(i + 3) % 4] };
   one[2].edge = two[0].edge = AQR_NONE;
-  if (!add_face(w, one, 0, 1, 2, s->source[f]) || !add_face(w, two, 0, 1, 2, s->source[f]))
+  if (!add_face(w, one, s->source[f]) || !add_face(w, two, s->source[f]))
     return false;
   aqr_index last = (aqr_index)(3 * (t->n_faces - 2));
   w->half->twin[last + 2] = last + 3;
