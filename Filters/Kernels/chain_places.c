@@ -81,7 +81,7 @@ static spots spots_of(const aqr_surface* s, const aqr_place* at)
 
 static double length_of(const aqr_surface* s, aqr_index h)
 {
-  return v3_norm(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
+  return v3_norm(aqr_edge_vector(s, h));
 }
 
 /* The half-edge of the same side of the same border or seam behind h. */

@@ -38,7 +38,7 @@ static double points_of(const aqr_surface* s, const aqr_chains* k, const aqr_cha
 /* The dihedral angle of an edge, integrated along it. */
 static double bend_at(const aqr_surface* s, aqr_index h)
 {
-  double length = v3_norm(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
+  double length = v3_norm(aqr_edge_vector(s, h));
   vec3 n = aqr_face_cross(s, aqr_face_of(h)), m = aqr_face_cross(s, aqr_face_of(aqr_any_twin(s, h)));
   return length * atan2(v3_norm(v3_cross(n, m)), v3_dot(n, m));
 }

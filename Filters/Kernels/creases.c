@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-static const double radians = 0.017453292519943295; /* per degree */
-
 /* ---- normals and dihedral angles ---- */
 
 enum
@@ -73,7 +71,7 @@ static bool has_normal(const detector* d, aqr_index f)
 
 static double edge_length(const aqr_surface* s, aqr_index h)
 {
-  return v3_norm(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
+  return v3_norm(aqr_edge_vector(s, h));
 }
 
 /* A needle takes the normal from over its longest side, so that the dihedral angle between the faces beside it appears
@@ -139,7 +137,7 @@ static void find_deviations(void* data, size_t begin, size_t end)
     if (t == AQR_NONE || t < h)
       continue;
     vec3 n = v3_load(d->normal + 3 * (size_t)(h / 3)), m = v3_load(d->normal + 3 * (size_t)(t / 3));
-    vec3 x = v3_cross(n, m), e = v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h)));
+    vec3 x = v3_cross(n, m), e = aqr_edge_vector(s, h);
     bool known = v3_norm2(n) > 0 && v3_norm2(m) > 0;
     double size = known ? atan2(v3_norm(x), v3_dot(n, m)) : 0;
     d->deviation[h] = d->deviation[t] = (float)(v3_dot(x, e) < 0 ? -size : size);
@@ -516,7 +514,7 @@ static size_t give_up(detector* d)
 aqr_status aqr_features_detect(
   aqr_context* c, const aqr_surface* s, double angle, double min_length, uint8_t* is_crease, aqr_report* report)
 {
-  detector d = { .c = c, .s = s, .angle = angle * radians, .min_length = min_length, .is_crease = is_crease };
+  detector d = { .c = c, .s = s, .angle = radians(angle), .min_length = min_length, .is_crease = is_crease };
   aqr_status status = AQR_OK;
   memset(is_crease, 0, 3 * s->n_faces);
   d.normal = AQR_NEW(c, double, 3 * s->n_faces);

@@ -81,7 +81,7 @@ static void measure_angles(void* data, size_t begin, size_t end)
     if (w == AQR_NONE || w < h)
       continue;
     vec3 n = aqr_face_cross(j->s, aqr_face_of(h)), m = aqr_face_cross(j->s, aqr_face_of(w));
-    vec3 e = v3_unit(v3_sub(aqr_point(j->s, aqr_to(j->s, h)), aqr_point(j->s, aqr_from(j->s, h))));
+    vec3 e = v3_unit(aqr_edge_vector(j->s, h));
     bool flat = !(v3_norm2(n) > 0) || !(v3_norm2(m) > 0);
     j->beta[h] = j->beta[w] = flat ? 0 : atan2(v3_dot(e, v3_cross(n, m)), v3_dot(n, m));
   }

@@ -119,12 +119,7 @@ static bool keeps_topology(aqr_remesher* r)
 {
   const aqr_polygon_mesh* m = &r->polygons;
   const aqr_surface* s = aqr_solid(r);
-  long long chi = 0, wanted = (long long)s->n_points + (long long)s->n_faces;
-  for (size_t h = 0; h < m->n_half_edges; h += 2)
-    chi -= m->half_edges[h].from != AQR_NONE;
-  for (size_t f = 0; f < m->n_faces; f++)
-    chi += m->faces[f] != AQR_NONE;
-  chi += (long long)count_vertices(m);
+  long long wanted = (long long)s->n_points + (long long)s->n_faces;
   for (aqr_index h = 0; h < 3 * s->n_faces; h++)
     wanted -= s->twin[h] == AQR_NONE || h < s->twin[h];
   if (s->mirrored)
@@ -133,7 +128,7 @@ static bool keeps_topology(aqr_remesher* r)
     if (joint != joint_wanted || aqr_symmetry_loops(r->surface, m) != s->mirrored_loops)
       return false;
   }
-  return chi == wanted;
+  return aqr_pm_euler(m) == wanted;
 }
 
 /* Of the whole output: the half's vertices twice, those on the plane once. */

@@ -113,9 +113,7 @@ static double to_box2(const box* b, const double* p)
 
 static double to_segment2(const measuring* w, aqr_index h, vec3 p)
 {
-  vec3 a = start_of(w->m, h), e = v3_sub(start_of(w->m, h ^ 1), a), d = v3_sub(p, a);
-  double length2 = v3_norm2(e), t = length2 > 0 ? fmin(1, fmax(0, v3_dot(d, e) / length2)) : 0;
-  return v3_norm2(v3_madd(d, -t, e));
+  return v3_segment_distance2(p, start_of(w->m, h), start_of(w->m, h ^ 1));
 }
 
 typedef struct pending
@@ -174,7 +172,7 @@ static aqr_distance summary(const measuring* w, bool features)
     for (size_t k = a->first; counts && k < a->first + a->count; k++)
     {
       aqr_index h = chains->half_edges[k];
-      double l = v3_norm(v3_sub(aqr_point(w->s, aqr_to(w->s, h)), aqr_point(w->s, aqr_from(w->s, h))));
+      double l = v3_norm(aqr_edge_vector(w->s, h));
       const double* d = w->distance + samples_per_edge * k;
       sum += l * (d[0] + d[1]) / samples_per_edge;
       length += l;

@@ -298,7 +298,7 @@ done:
 
 aqr_status aqr_chains_build(aqr_context* c, const aqr_surface* s, double corner_angle, aqr_chains* chains)
 {
-  linker l = { .c = c, .s = s, .corner_angle = corner_angle * 0.017453292519943295, .out = chains };
+  linker l = { .c = c, .s = s, .corner_angle = radians(corner_angle), .out = chains };
   aqr_status status = AQR_OK;
   *chains = (aqr_chains){ .n_clean = s->n_clean };
   chains->is_node = AQR_NEW0(c, uint8_t, s->n_clean);

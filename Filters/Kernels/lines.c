@@ -47,6 +47,19 @@ int aqr_chords_cross(const aqr_surface* s, aqr_index f, const aqr_sample* a0, co
   return end == turn ? 1 : -1;
 }
 
+aqr_index aqr_chain_at(const aqr_surface* s, const aqr_lines* l, const aqr_sample* at)
+{
+  aqr_index other = aqr_any_twin(s, at->edge);
+  const aqr_index f = aqr_face_of(at->edge);
+  for (aqr_index n = l->head[f]; n != AQR_NONE; n = aqr_next_chord(l, n, f))
+  {
+    aqr_index e = l->samples[n].edge;
+    if (l->lines[l->samples[n].line].is_chain && (e == at->edge || e == other))
+      return n;
+  }
+  return AQR_NONE;
+}
+
 /* A line and its continuation over a seam meet it at one place: what else meets it there lies to the same side of both.
  */
 static void share_place(aqr_lines* l, size_t sample, aqr_index partner)

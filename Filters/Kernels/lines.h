@@ -70,6 +70,9 @@ static inline aqr_index aqr_sample_half_edge(const aqr_surface* s, const aqr_sam
   return aqr_face_of(a->edge) == f ? a->edge : aqr_any_twin(s, a->edge);
 }
 
+/* The sample of a chain that starts on the edge of `at`; AQR_NONE where no chain runs along it. */
+aqr_index aqr_chain_at(const aqr_surface* s, const aqr_lines* l, const aqr_sample* at);
+
 static inline vec3 aqr_edge_point(const aqr_surface* s, aqr_index h, double t)
 {
   vec3 a = aqr_point(s, aqr_from(s, h)), b = aqr_point(s, aqr_to(s, h));

@@ -17,20 +17,14 @@ aqr_status aqr_add_stop(aqr_network_builder* b, aqr_index chain, aqr_index sampl
 /* Where on a chain a line ends. */
 static bool landing_on(const aqr_network_builder* b, const aqr_sample* a, aqr_stop* stop)
 {
-  const aqr_lines* l = b->l;
-  aqr_index other = aqr_any_twin(b->s, a->edge);
-  const aqr_index f = aqr_face_of(a->edge);
-  for (aqr_index k = l->head[f]; k != AQR_NONE; k = aqr_next_chord(l, k, f))
-  {
-    aqr_index e = l->samples[k].edge;
-    if (!l->lines[l->samples[k].line].is_chain || (e != a->edge && e != other))
-      continue;
-    bool forward = e == a->edge;
-    *stop = (aqr_stop){ l->samples[k].line, k, forward ? a->t : 1 - a->t, forward ? a->t : -a->t,
-      forward ? (int64_t)a->key : -(int64_t)a->key, AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
-    return true;
-  }
-  return false;
+  aqr_index k = aqr_chain_at(b->s, b->l, a);
+  if (k == AQR_NONE)
+    return false;
+  const aqr_sample* on = &b->l->samples[k];
+  bool forward = on->edge == a->edge;
+  *stop = (aqr_stop){ on->line, k, forward ? a->t : 1 - a->t, forward ? a->t : -a->t,
+    forward ? (int64_t)a->key : -(int64_t)a->key, AQR_NONE, AQR_NONE, AQR_NONE, AQR_NONE };
+  return true;
 }
 
 /* Of a sample at the end of a line. */
@@ -97,13 +91,9 @@ static bool farthest(
 {
   double best = least;
   bool found = false;
-  vec3 d = v3_sub(q, p);
-  double n = v3_norm2(d);
   for (aqr_index i = low; i < high; i++)
   {
-    vec3 a = v3_sub(b->l->samples[i].p, p);
-    double t = n > 0 ? fmin(1, fmax(0, v3_dot(a, d) / n)) : 0;
-    double distance = v3_norm(v3_madd(a, -t, d));
+    double distance = sqrt(v3_segment_distance2(b->l->samples[i].p, p, q));
     if (distance > best)
     {
       best = distance;

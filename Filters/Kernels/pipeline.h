@@ -92,7 +92,7 @@ static inline double aqr_line_points(const aqr_options* o)
 
 static inline double aqr_cosine(double degrees)
 {
-  return cos(degrees * 0.017453292519943295);
+  return cos(radians(degrees));
 }
 
 static inline bool aqr_differ(double a, double b)

@@ -57,7 +57,7 @@ aqr_index aqr_pm_find(const aqr_polygon_mesh* m, aqr_index u, aqr_index v)
   return AQR_NONE;
 }
 
-static bool face_has(const aqr_polygon_mesh* m, aqr_index f, aqr_index v)
+bool aqr_pm_face_has(const aqr_polygon_mesh* m, aqr_index f, aqr_index v)
 {
   aqr_index h = m->faces[f];
   do
@@ -81,7 +81,7 @@ bool aqr_pm_same_vertices(const aqr_polygon_mesh* m, aqr_index f, aqr_index g)
     return false;
   do
   {
-    if (!face_has(m, g, aqr_pm_from(m, h)))
+    if (!aqr_pm_face_has(m, g, aqr_pm_from(m, h)))
       return false;
     h = aqr_pm_next(m, h);
   } while (h != m->faces[f]);

@@ -117,6 +117,8 @@ size_t aqr_pm_face_size(const aqr_polygon_mesh* m, aqr_index f);
 vec3 aqr_pm_area(const aqr_polygon_mesh* m, aqr_index f);
 /* The half-edge from u to v, AQR_NONE where there is none. */
 aqr_index aqr_pm_find(const aqr_polygon_mesh* m, aqr_index u, aqr_index v);
+/* Whether v is a corner of face f. */
+bool aqr_pm_face_has(const aqr_polygon_mesh* m, aqr_index f, aqr_index v);
 /* Whether faces f and g have the same set of vertices. */
 bool aqr_pm_same_vertices(const aqr_polygon_mesh* m, aqr_index f, aqr_index g);
 /* Another face with the same vertices as f; AQR_NONE where there is none. */
@@ -161,6 +163,6 @@ bool aqr_pm_is_regular(const aqr_polygon_mesh* m);
 /* The same on all threads: AQR_INTERNAL where it is not consistent, or not regular though it is to be. */
 aqr_status aqr_pm_verify(aqr_context* c, const aqr_polygon_mesh* m, bool regular);
 /* Vertices - edges + faces. */
-long aqr_pm_euler(const aqr_polygon_mesh* m);
+long long aqr_pm_euler(const aqr_polygon_mesh* m);
 
 #endif

@@ -178,9 +178,9 @@ aqr_status aqr_pm_verify(aqr_context* c, const aqr_polygon_mesh* m, bool regular
   return status == AQR_OK && regular ? check_regular(c, m) : status;
 }
 
-long aqr_pm_euler(const aqr_polygon_mesh* m)
+long long aqr_pm_euler(const aqr_polygon_mesh* m)
 {
-  long x = 0;
+  long long x = 0;
   for (size_t v = 0; v < m->n_vertices; v++)
     x += m->vertices[v].out != AQR_NONE;
   for (size_t h = 0; h < m->n_half_edges; h += 2)

@@ -29,13 +29,6 @@ void aqr_pcell_free(aqr_context* c, aqr_pcell* cell)
   memset(cell, 0, sizeof *cell);
 }
 
-static double distance2_to_segment(vec3 p, vec3 a, vec3 b)
-{
-  vec3 ab = v3_sub(b, a), ap = v3_sub(p, a);
-  double n = v3_norm2(ab), t = n > 0 ? lesser(1, greater(0, v3_dot(ap, ab) / n)) : 0;
-  return v3_norm2(v3_madd(ap, -t, ab));
-}
-
 /* Whether the inside of an edge whose ends are not comes within the radius of the probe. */
 static bool passes_by(const aqr_probe* probe, vec3 a, vec3 b)
 {
@@ -116,7 +109,7 @@ static void look(const aqr_lines* lines, aqr_index face, const aqr_probe* probe,
     double along = v3_dot(d, probe->direction);
     if (along * along < family_cosine2 * v3_norm2(d))
       continue;
-    double distance2 = distance2_to_segment(probe->p, a->p, a[1].p);
+    double distance2 = v3_segment_distance2(probe->p, a->p, a[1].p);
     if (line == probe->self)
     {
       /* by the nearer end: in a large face a chord that starts far back ends at the probe */

@@ -457,18 +457,6 @@ done:
 
 /* ---- operators that keep a mesh regular ---- */
 
-static bool face_contains(const aqr_polygon_mesh* m, aqr_index f, aqr_index v)
-{
-  aqr_index h = m->faces[f];
-  do
-  {
-    if (aqr_pm_from(m, h) == v)
-      return true;
-    h = aqr_pm_next(m, h);
-  } while (h != m->faces[f]);
-  return false;
-}
-
 bool aqr_can_merge(const aqr_polygon_mesh* m, aqr_index h)
 {
   aqr_index f = aqr_pm_face(m, h), g = aqr_pm_face(m, h ^ 1);
@@ -476,8 +464,8 @@ bool aqr_can_merge(const aqr_polygon_mesh* m, aqr_index h)
     return false;
   unsigned common = 0;
   for (aqr_index k = aqr_pm_next(m, h); k != h && common <= 2; k = aqr_pm_next(m, k))
-    common += face_contains(m, g, aqr_pm_from(m, k));
-  return common + face_contains(m, g, aqr_pm_from(m, h)) == 2;
+    common += aqr_pm_face_has(m, g, aqr_pm_from(m, k));
+  return common + aqr_pm_face_has(m, g, aqr_pm_from(m, h)) == 2;
 }
 
 bool aqr_can_join(const aqr_polygon_mesh* m, aqr_index v)
@@ -593,7 +581,7 @@ bool aqr_can_contract(const aqr_polygon_mesh* m, aqr_index h)
     aqr_index w = aqr_pm_to(m, k), face = aqr_pm_face(m, k);
     if (w != left && w != right && aqr_pm_find(m, w, v) != AQR_NONE)
       return false;
-    if (face != AQR_NONE && face != f && face != g && face_contains(m, face, v))
+    if (face != AQR_NONE && face != f && face != g && aqr_pm_face_has(m, face, v))
       return false;
   }
   return true;

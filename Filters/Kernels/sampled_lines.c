@@ -122,25 +122,6 @@ done:
   return status;
 }
 
-/* The chain line and the position on it, in spacings, of a point on a boundary or seam edge. */
-static bool on_chain(const aqr_sampler* m, const aqr_sample* at, aqr_index* chain, double* sigma)
-{
-  const aqr_lines* l = m->lines;
-  aqr_index other = aqr_any_twin(m->s, at->edge);
-  const aqr_index f = aqr_face_of(at->edge);
-  for (aqr_index n = l->head[f]; n != AQR_NONE; n = aqr_next_chord(l, n, f))
-  {
-    const aqr_sample* a = &l->samples[n];
-    if (!l->lines[a->line].is_chain || (a->edge != at->edge && a->edge != other))
-      continue;
-    double t = a->edge == at->edge ? at->t : 1 - at->t;
-    *chain = a->line;
-    *sigma = (double)a->sigma + t * (double)(a[1].sigma - a->sigma);
-    return true;
-  }
-  return false;
-}
-
 /* ---- marks ---- */
 
 double aqr_points_on(const aqr_sampler* m, aqr_index id)
@@ -165,9 +146,12 @@ static aqr_status add_mark(aqr_sampler* m, aqr_index line, double sigma)
 /* Marks the chain that a line ends on. */
 static aqr_status land(aqr_sampler* m, const aqr_sample* at)
 {
-  aqr_index chain;
-  double sigma;
-  return on_chain(m, at, &chain, &sigma) ? add_mark(m, chain, sigma) : AQR_OK;
+  aqr_index n = aqr_chain_at(m->s, m->lines, at);
+  if (n == AQR_NONE)
+    return AQR_OK;
+  const aqr_sample* a = &m->lines->samples[n];
+  double t = a->edge == at->edge ? at->t : 1 - at->t;
+  return add_mark(m, a->line, (double)a->sigma + t * (double)(a[1].sigma - a->sigma));
 }
 
 /* How far along the chord from a the chord from b crosses it: the ratio of a's distances from b's line. */
@@ -336,7 +320,7 @@ static aqr_status cross_seam(aqr_sampler* m, aqr_index sample, aqr_index* id)
   if (h == AQR_NONE)
     return AQR_OK;
   double t = h == a.edge ? a.t : 1 - a.t;
-  vec3 e = v3_unit(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
+  vec3 e = v3_unit(aqr_edge_vector(s, h));
   vec3 inward = v3_cross(v3_unit(aqr_face_cross(s, aqr_face_of(h))), e);
   double along, across;
   bool allowed;
@@ -401,7 +385,7 @@ aqr_status aqr_seed_on_chain(aqr_sampler* m, aqr_index h, double t, double dista
     aqr_index k = side ? aqr_any_twin(s, h) : h;
     if (k == AQR_NONE)
       break;
-    vec3 e = v3_unit(v3_sub(aqr_point(s, aqr_to(s, k)), aqr_point(s, aqr_from(s, k))));
+    vec3 e = v3_unit(aqr_edge_vector(s, k));
     vec3 inward = v3_cross(v3_unit(aqr_face_cross(s, aqr_face_of(k))), e);
     vec3 p = aqr_edge_point(s, k, side ? 1 - t : t);
     bool allowed;

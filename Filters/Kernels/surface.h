@@ -86,6 +86,10 @@ static inline vec3 aqr_point(const aqr_surface* s, aqr_index v)
 {
   return v3_load(s->points + 3 * (size_t)v);
 }
+static inline vec3 aqr_edge_vector(const aqr_surface* s, aqr_index h)
+{
+  return v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h)));
+}
 /* Twice the area times the unit normal. */
 static inline vec3 aqr_face_cross(const aqr_surface* s, aqr_index f)
 {
@@ -153,5 +157,8 @@ aqr_status aqr_surface_copy(aqr_context* c, const aqr_surface* from, aqr_surface
 bool aqr_surface_reserve_faces(aqr_context* c, aqr_surface* s, size_t need);
 bool aqr_surface_reserve_points(aqr_context* c, aqr_surface* s, size_t need);
 bool aqr_surface_reserve_origins(aqr_context* c, aqr_surface* s, size_t need);
+
+/* The place at fraction t between two places on one input triangle. */
+aqr_origin aqr_origin_between(const aqr_origin* a, const aqr_origin* b, double t, aqr_index triangle);
 
 #endif

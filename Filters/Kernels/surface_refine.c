@@ -24,7 +24,7 @@ typedef struct refiner
 
 static double length2(const aqr_surface* s, aqr_index h)
 {
-  return v3_norm2(v3_sub(aqr_point(s, aqr_to(s, h)), aqr_point(s, aqr_from(s, h))));
+  return v3_norm2(aqr_edge_vector(s, h));
 }
 
 static bool listed(refiner* r, aqr_index h, double least2)
@@ -35,28 +35,6 @@ static bool listed(refiner* r, aqr_index h, double least2)
     return false;
   r->list[r->n++] = h;
   return true;
-}
-
-/* Halfway between two origins; both lie on the input triangle that the split face came from. */
-static aqr_origin middle(const aqr_origin* a, const aqr_origin* b, aqr_index triangle)
-{
-  aqr_origin r = { { a->point[0], a->point[0], a->point[0] }, { 0, 0, 0 }, triangle };
-  unsigned n = 0;
-  for (unsigned k = 0; k < 6; k++)
-  {
-    const aqr_origin* o = k < 3 ? a : b;
-    if (!(o->weight[k % 3] > 0))
-      continue;
-    unsigned j = 0;
-    while (j < n && r.point[j] != o->point[k % 3])
-      j++;
-    if (j == 3)
-      continue;
-    if (j == n)
-      r.point[n++] = o->point[k % 3];
-    r.weight[j] += o->weight[k % 3] / 2;
-  }
-  return r;
 }
 
 /* Splits the face of h (from a to b, third corner c) into a m c, which keeps its number, and m b c, which is `fresh`.
@@ -88,7 +66,7 @@ static bool split_edge(refiner* r, aqr_index h)
     return false;
   aqr_index a = aqr_from(s, h), b = aqr_to(s, h);
   v3_store(s->points + 3 * (size_t)m, v3_scale(v3_add(aqr_point(s, a), aqr_point(s, b)), 0.5));
-  s->origin[m] = middle(&s->origin[a], &s->origin[b], s->source[h / 3]);
+  s->origin[m] = aqr_origin_between(&s->origin[a], &s->origin[b], 0.5, s->source[h / 3]);
   s->n_points++;
   s->n_faces += t == AQR_NONE ? 1 : 2;
   split_face(s, h, m, g);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The arrays of the working surface. */
+/* The arrays of the working surface, and what goes into them. */
 #include "surface.h"
 
 #include <string.h>
@@ -61,6 +61,26 @@ bool aqr_surface_reserve_origins(aqr_context* c, aqr_surface* s, size_t need)
 {
   move m[1] = { { (void**)&s->origin, sizeof *s->origin } };
   return grow(c, m, 1, &s->origins_held, need);
+}
+
+aqr_origin aqr_origin_between(const aqr_origin* a, const aqr_origin* b, double t, aqr_index triangle)
+{
+  aqr_origin r = { { a->point[0], a->point[0], a->point[0] }, { 0, 0, 0 }, triangle };
+  unsigned n = 0;
+  for (unsigned k = 0; k < 6; k++)
+  {
+    const aqr_origin* o = k < 3 ? a : b;
+    double share = (k < 3 ? 1 - t : t) * (double)o->weight[k % 3];
+    unsigned j = 0;
+    while (j < n && r.point[j] != o->point[k % 3])
+      j++;
+    if (!(share > 0) || j == 3)
+      continue;
+    if (j == n)
+      r.point[n++] = o->point[k % 3];
+    r.weight[j] += (float)share;
+  }
+  return r;
 }
 
 void aqr_surface_free(aqr_context* c, aqr_surface* s)

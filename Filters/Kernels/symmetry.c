@@ -69,27 +69,6 @@ static aqr_index kept(cutter* w, aqr_index v)
   return w->id[v] = (aqr_index)(w->half->n_points - 1);
 }
 
-/* Weights at fraction t between two places on one input triangle. */
-static aqr_origin between(const aqr_origin* a, const aqr_origin* b, double t, aqr_index triangle)
-{
-  aqr_origin r = { { a->point[0], a->point[0], a->point[0] }, { 0, 0, 0 }, triangle };
-  unsigned n = 0;
-  for (unsigned k = 0; k < 6; k++)
-  {
-    const aqr_origin* o = k < 3 ? a : b;
-    double share = (k < 3 ? 1 - t : t) * (double)o->weight[k % 3];
-    unsigned j = 0;
-    while (j < n && r.point[j] != o->point[k % 3])
-      j++;
-    if (!(share > 0) || j == 3)
-      continue;
-    if (j == n)
-      r.point[n++] = o->point[k % 3];
-    r.weight[j] += (float)share;
-  }
-  return r;
-}
-
 /* The point where the plane cuts an edge. */
 static aqr_index cut_at(cutter* w, aqr_index h)
 {
@@ -100,7 +79,7 @@ static aqr_index cut_at(cutter* w, aqr_index h)
   aqr_index a = aqr_from(s, low), b = aqr_to(s, low);
   double at = w->height[a] / (w->height[a] - w->height[b]);
   vec3 p = v3_madd(v3_scale(aqr_point(s, a), 1 - at), at, aqr_point(s, b));
-  if (!add_point(w, onto_plane(w->plane, p), between(&s->origin[a], &s->origin[b], at, s->source[low / 3])))
+  if (!add_point(w, onto_plane(w->plane, p), aqr_origin_between(&s->origin[a], &s->origin[b], at, s->source[low / 3])))
     return AQR_NONE;
   return w->cut[low] = (aqr_index)(w->half->n_points - 1);
 }

@@ -95,4 +95,16 @@ static inline vec3 v3_reject(vec3 a, vec3 n)
   return v3_madd(a, -v3_dot(a, n), n);
 }
 
+static inline double v3_segment_distance2(vec3 p, vec3 a, vec3 b)
+{
+  vec3 ab = v3_sub(b, a), ap = v3_sub(p, a);
+  double n = v3_norm2(ab), t = n > 0 ? lesser(1, greater(0, v3_dot(ap, ab) / n)) : 0;
+  return v3_norm2(v3_madd(ap, -t, ab));
+}
+
+static inline double radians(double degrees)
+{
+  return degrees * 0.017453292519943295;
+}
+
 #endif

@@ -159,7 +159,7 @@ AQR_TEST(a_mesh_whose_compaction_is_cancelled_is_as_before)
   disturb(&plain, &m, 1, 2000);
   CHECK(aqr_pm_is_consistent(&m));
   size_t n = m.n_half_edges, allowed = 0;
-  long euler = aqr_pm_euler(&m);
+  long long euler = aqr_pm_euler(&m);
   for (;; allowed++)
   {
     asked a = { 0, allowed };
