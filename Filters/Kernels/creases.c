@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Creases (paper 3): edges of sharp dihedral angle that stand out of a smooth surface, in chains of some length. */
-#include "feature_graph.h"
+#include "creases.h"
 
 #include <string.h>
 

@@ -105,21 +105,21 @@ static void count_stretch(const aqr_regions* r, aqr_index item, bool leaves)
 {
   add_euler(r, item, -1);
   if (leaves)
-    add_border(r, item, 4);
+    add_border(r, item, AQR_GOES_ON);
 }
 
 static void count_plain(const aqr_regions* r, aqr_index f)
 {
   const aqr_surface* s = r->s;
   int32_t euler = 1;
-  uint8_t bordered = 2;
+  uint8_t bordered = AQR_HAS_CELL;
   for (aqr_index h = 3 * f; h < 3 * f + 3; h++)
   {
     aqr_index t = aqr_twin(s, h), v = aqr_from(s, h);
     bool leaves = t != AQR_NONE && !r->suspect[aqr_face_of(t)];
     euler += s->fan[v] == h && !on_chain(r, v);
     euler -= t != AQR_NONE && (t > h || leaves);
-    bordered |= leaves ? 4 : 0;
+    bordered |= leaves ? AQR_GOES_ON : 0;
   }
   atomic_store_explicit(&r->euler[f], euler, memory_order_relaxed); /* the item is this face's alone */
   atomic_store_explicit(&r->bordered[f], bordered, memory_order_relaxed);
@@ -132,7 +132,7 @@ static void count_cells(const aqr_regions* r, const aqr_layout* a)
   for (size_t i = 0; i < a->n_cells; i++)
   {
     add_euler(r, a->item[i], 1);
-    add_border(r, a->item[i], 2);
+    add_border(r, a->item[i], AQR_HAS_CELL);
   }
   for (unsigned k = 0; k < 3; k++)
   {
@@ -221,7 +221,7 @@ static void begin_items(void* data, size_t begin, size_t end)
   {
     atomic_init(&r->parent[i], (aqr_index)i);
     atomic_init(&r->euler[i], 0);
-    atomic_init(&r->bordered[i], i >= r->s->n_faces);
+    atomic_init(&r->bordered[i], i < r->s->n_faces ? 0 : AQR_HAS_LOOP);
   }
 }
 
@@ -230,7 +230,7 @@ static void mark_bare(void* data, size_t begin, size_t end)
   aqr_regions* r = data;
   for (size_t f = begin; f < end; f++)
     if (r->suspect[f])
-      r->is_bare[f] = r->start[3 * f] != AQR_NONE && !(r->bordered[find(r, r->start[3 * f])] & 1);
+      r->is_bare[f] = r->start[3 * f] != AQR_NONE && !(r->bordered[find(r, r->start[3 * f])] & AQR_HAS_LOOP);
 }
 
 /* Finds the regions, of each its Euler number, and components without network. */
@@ -252,7 +252,7 @@ done:
 bool aqr_region_needs_cut(const aqr_regions* r, aqr_index item)
 {
   aqr_index root = find(r, item);
-  return r->bordered[root] == 3 && r->euler[root] < 1;
+  return r->bordered[root] == (AQR_HAS_LOOP | AQR_HAS_CELL) && r->euler[root] < 1;
 }
 
 aqr_status aqr_regions_cut(aqr_context* c, const aqr_surface* s, const aqr_chains* chains, const aqr_network* net,

@@ -9,6 +9,14 @@
 typedef _Atomic(int32_t) aqr_shared_number;
 typedef _Atomic(uint8_t) aqr_shared_flag;
 
+/* What a region has. */
+enum
+{
+  AQR_HAS_LOOP = 1,
+  AQR_HAS_CELL = 2,
+  AQR_GOES_ON = 4 /* among faces not looked at */
+};
+
 typedef struct aqr_regions
 {
   aqr_context* c;
@@ -20,7 +28,7 @@ typedef struct aqr_regions
   aqr_shared_index* parent; /* union-find over items: faces without chords, then loops */
   size_t n_items;
   aqr_shared_number* euler;  /* per item, and of its whole region per root when all is counted */
-  aqr_shared_flag* bordered; /* as euler: bit 0 has a loop, bit 1 has a cell, bit 2 goes on among faces not looked at */
+  aqr_shared_flag* bordered; /* as euler: bits of the above */
   uint8_t* suspect;          /* per face: looked at */
   uint8_t* picked;           /* per face: to be looked at by one thread alone */
   uint8_t* is_bare;          /* per face: of a component without network */

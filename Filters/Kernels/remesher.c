@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pipeline: surface -> features -> curvature -> direction field -> sizing -> lines -> network -> faces -> fit. */
 #include "chain_places.h"
+#include "creases.h"
 #include "feature_error.h"
 #include "fit.h"
 #include "pipeline.h"

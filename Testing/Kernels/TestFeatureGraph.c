@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "test.h"
 
+#include "creases.h"
 #include "feature_graph.h"
 
 #include <stdlib.h>
