@@ -90,88 +90,143 @@ static void put_on_plane(
     *kind = AQR_VERTEX_INTERIOR;
 }
 
+/* The mesh of the half becomes the first part of the whole; without symmetry it is all. */
+typedef struct mesh_job
+{
+  const aqr_remesher* r;
+  bool mirrored;
+  aqr_plane plane;
+  aqr_index *id, *image; /* per vertex: its point, and the point at its mirror image */
+  size_t n_points, n_faces, n_corners, half_faces, half_corners;
+  double *points, *normals;
+  aqr_origin* origins;
+  uint8_t* kind;
+  int64_t *offsets, *connectivity;
+  aqr_index* source;
+} mesh_job;
+
+static void number_points(mesh_job* j)
+{
+  const aqr_polygon_mesh* m = &j->r->polygons;
+  for (size_t v = 0; v < m->n_vertices; v++)
+    j->id[v] = m->vertices[v].out == AQR_NONE ? AQR_NONE : (aqr_index)j->n_points++;
+  for (aqr_index v = 0; j->mirrored && v < m->n_vertices; v++)
+    j->image[v] =
+      j->id[v] == AQR_NONE || aqr_symmetry_on_plane(j->r->surface, m, v) ? j->id[v] : (aqr_index)j->n_points++;
+}
+
+static void count_faces(mesh_job* j)
+{
+  const aqr_polygon_mesh* m = &j->r->polygons;
+  for (size_t h = 0; h < m->n_half_edges; h++)
+    j->half_corners += m->half_edges[h].from != AQR_NONE && m->half_edges[h].face != AQR_NONE;
+  for (size_t f = 0; f < m->n_faces; f++)
+    j->half_faces += m->faces[f] != AQR_NONE;
+  j->n_faces = (j->mirrored ? 2 : 1) * j->half_faces;
+  j->n_corners = (j->mirrored ? 2 : 1) * j->half_corners;
+}
+
+/* The arrays, which the mesh owns at once. */
+static bool make_arrays(aqr_context* c, mesh_job* j, aqr_mesh* out)
+{
+  j->points = AQR_NEW(c, double, 3 * j->n_points);
+  j->normals = AQR_NEW(c, double, 3 * j->n_points);
+  j->origins = AQR_NEW(c, aqr_origin, j->n_points);
+  j->kind = AQR_NEW(c, uint8_t, j->n_points);
+  j->offsets = AQR_NEW(c, int64_t, j->n_faces + 1);
+  j->connectivity = AQR_NEW(c, int64_t, j->n_corners);
+  j->source = AQR_NEW(c, aqr_index, j->n_faces);
+  *out = (aqr_mesh){ j->n_points, j->points, j->normals, j->origins, j->kind, j->n_faces, j->offsets, j->connectivity,
+    j->source, j->n_corners };
+  return j->points && j->normals && j->origins && j->kind && j->offsets && j->connectivity && j->source;
+}
+
+/* The mirror image of point i of the half. */
+static void put_image(const mesh_job* j, size_t i, vec3 normal, size_t image)
+{
+  const aqr_plane turn = { { 0, 0, 0 }, j->plane.normal };
+  v3_store(j->points + 3 * image, mirror(&j->plane, v3_load(j->points + 3 * i)));
+  v3_store(j->normals + 3 * image, mirror(&turn, normal));
+  j->origins[image] = j->origins[i];
+  j->kind[image] = j->kind[i];
+}
+
+static void fill_points(const mesh_job* j)
+{
+  const aqr_surface* s = j->r->surface;
+  const aqr_polygon_mesh* m = &j->r->polygons;
+  for (aqr_index v = 0; v < m->n_vertices; v++)
+  {
+    if (j->id[v] == AQR_NONE)
+      continue;
+    const aqr_vertex* at = &m->vertices[v];
+    size_t i = j->id[v];
+    unscale(s, at->position, j->points + 3 * i);
+    v3_store(j->normals + 3 * i, at->normal);
+    j->origins[i] = origin_of(s, &at->place);
+    j->kind[i] = at->kind;
+    if (j->mirrored && j->image[v] == i)
+      put_on_plane(j->r, &j->plane, v, j->points + 3 * i, j->normals + 3 * i, &j->kind[i]);
+    else if (j->mirrored)
+      put_image(j, i, at->normal, j->image[v]);
+  }
+}
+
+/* Face i of the mesh, as face f of the half with corners from *k on, which then is behind them. */
+static aqr_status fill_face(const mesh_job* j, aqr_index i, size_t f, size_t* k)
+{
+  const aqr_polygon_mesh* m = &j->r->polygons;
+  const size_t first = *k, size = aqr_pm_face_size(m, i);
+  if (size > j->half_corners - first)
+    return AQR_INTERNAL;
+  aqr_index h = m->faces[i];
+  j->offsets[f] = (int64_t)first;
+  j->source[f] = j->r->surface->source[m->vertices[aqr_pm_from(m, h)].place.face];
+  for (; *k < first + size; h = aqr_pm_next(m, h), ++*k)
+  {
+    j->connectivity[*k] = j->id[aqr_pm_from(m, h)];
+    if (j->mirrored) /* the other way round, behind all of the half */
+      j->connectivity[j->half_corners + 2 * first + size - 1 - *k] = j->image[aqr_pm_from(m, h)];
+  }
+  return AQR_OK;
+}
+
+static aqr_status fill_faces(const mesh_job* j)
+{
+  const aqr_polygon_mesh* m = &j->r->polygons;
+  aqr_status status = AQR_OK;
+  size_t k = 0, f = 0;
+  for (aqr_index i = 0; i < m->n_faces; i++)
+    if (m->faces[i] != AQR_NONE)
+      AQR_TRY(fill_face(j, i, f++, &k));
+  for (size_t i = 0; j->mirrored && i < j->half_faces; i++)
+  {
+    j->offsets[j->half_faces + i] = (int64_t)j->half_corners + j->offsets[i];
+    j->source[j->half_faces + i] = j->source[i];
+  }
+  j->offsets[j->n_faces] = (int64_t)j->n_corners;
+done:
+  return status;
+}
+
 aqr_status aqr_results_mesh(aqr_remesher* r)
 {
   aqr_context* c = &r->context;
-  const aqr_polygon_mesh* m = &r->polygons;
+  const size_t n = r->polygons.n_vertices, n_images = r->surface->mirrored ? n : 0;
   aqr_status status = AQR_OK;
-  aqr_mesh* out = &r->mesh;
   aqr_results_free_mesh(r);
-  const bool mirrored = r->surface->mirrored;
-  const aqr_plane plane = aqr_symmetry_plane(&r->done);
-  size_t n_points = 0, n_faces = 0, n_corners = 0, half_faces, half_corners;
-  aqr_index* id = AQR_NEW(c, aqr_index, m->n_vertices);
-  aqr_index* image = AQR_NEW(c, aqr_index, mirrored ? m->n_vertices : 0); /* point at the mirror image */
-  AQR_REQUIRE(id && image, AQR_OUT_OF_MEMORY);
-  for (size_t v = 0; v < m->n_vertices; v++)
-    id[v] = m->vertices[v].out == AQR_NONE ? AQR_NONE : (aqr_index)n_points++;
-  for (size_t h = 0; h < m->n_half_edges; h++)
-    n_corners += m->half_edges[h].from != AQR_NONE && m->half_edges[h].face != AQR_NONE;
-  for (size_t f = 0; f < m->n_faces; f++)
-    n_faces += m->faces[f] != AQR_NONE;
-  half_faces = n_faces;
-  half_corners = n_corners;
-  for (aqr_index v = 0; mirrored && v < m->n_vertices; v++)
-    image[v] = id[v] == AQR_NONE || aqr_symmetry_on_plane(r->surface, m, v) ? id[v] : (aqr_index)n_points++;
-  n_faces *= mirrored ? 2 : 1;
-  n_corners *= mirrored ? 2 : 1;
-  double* points = AQR_NEW(c, double, 3 * n_points);
-  double* normals = AQR_NEW(c, double, 3 * n_points);
-  aqr_origin* origins = AQR_NEW(c, aqr_origin, n_points);
-  uint8_t* kind = AQR_NEW(c, uint8_t, n_points);
-  int64_t* offsets = AQR_NEW(c, int64_t, n_faces + 1);
-  int64_t* connectivity = AQR_NEW(c, int64_t, n_corners);
-  aqr_index* source = AQR_NEW(c, aqr_index, n_faces);
-  *out = (aqr_mesh){ n_points, points, normals, origins, kind, n_faces, offsets, connectivity, source, n_corners };
-  AQR_REQUIRE(points && normals && origins && kind && offsets && connectivity && source, AQR_OUT_OF_MEMORY);
-  for (size_t v = 0; v < m->n_vertices; v++)
-  {
-    if (id[v] == AQR_NONE)
-      continue;
-    unscale(r->surface, m->vertices[v].position, points + 3 * (size_t)id[v]);
-    v3_store(normals + 3 * (size_t)id[v], m->vertices[v].normal);
-    origins[id[v]] = origin_of(r->surface, &m->vertices[v].place);
-    kind[id[v]] = m->vertices[v].kind;
-    if (mirrored && image[v] == id[v])
-      put_on_plane(r, &plane, (aqr_index)v, points + 3 * (size_t)id[v], normals + 3 * (size_t)id[v], &kind[id[v]]);
-    else if (mirrored)
-    {
-      size_t i = image[v];
-      v3_store(points + 3 * i, mirror(&plane, v3_load(points + 3 * (size_t)id[v])));
-      const aqr_plane turn = { { 0, 0, 0 }, plane.normal };
-      v3_store(normals + 3 * i, mirror(&turn, m->vertices[v].normal));
-      origins[i] = origins[id[v]];
-      kind[i] = kind[id[v]];
-    }
-  }
-  size_t k = 0, f = 0;
-  for (size_t i = 0; i < m->n_faces; i++)
-  {
-    if (m->faces[i] == AQR_NONE)
-      continue;
-    offsets[f] = (int64_t)k;
-    aqr_index h = m->faces[i];
-    source[f++] = r->surface->source[m->vertices[m->half_edges[h].from].place.face];
-    do
-    {
-      AQR_REQUIRE(k < half_corners, AQR_INTERNAL);
-      if (mirrored) /* the other way round, behind all of the half */
-        connectivity[half_corners + 2 * (size_t)offsets[f - 1] + aqr_pm_face_size(m, (aqr_index)i) - 1 - k] =
-          image[m->half_edges[h].from];
-      connectivity[k++] = id[m->half_edges[h].from];
-      h = m->half_edges[h].next;
-    } while (h != m->faces[i]);
-  }
-  for (size_t i = 0; mirrored && i < half_faces; i++)
-  {
-    offsets[half_faces + i] = (int64_t)half_corners + offsets[i];
-    source[half_faces + i] = source[i];
-  }
-  k = n_corners;
-  offsets[n_faces] = (int64_t)k;
+  mesh_job j = { .r = r, .mirrored = r->surface->mirrored, .plane = aqr_symmetry_plane(&r->done) };
+  j.id = AQR_NEW(c, aqr_index, n);
+  j.image = AQR_NEW(c, aqr_index, n_images);
+  AQR_REQUIRE(j.id && j.image, AQR_OUT_OF_MEMORY);
+  number_points(&j);
+  count_faces(&j);
+  AQR_REQUIRE(make_arrays(c, &j, &r->mesh), AQR_OUT_OF_MEMORY);
+  fill_points(&j);
+  AQR_TRY(fill_faces(&j));
 done:
-  AQR_DROP(c, id, m->n_vertices);
-  AQR_DROP(c, image, mirrored ? m->n_vertices : 0);
+  AQR_DROP(c, j.id, n);
+  AQR_DROP(c, j.image, n_images);
   if (status != AQR_OK)
     aqr_results_free_mesh(r);
   return status;

@@ -196,78 +196,111 @@ done:
   return status;
 }
 
-/* Turns faces so that neighbours agree; in each component the side that most faces had wins. Edges over which no choice
- * agrees (Moebius) are cut. */
-static aqr_status orient(builder* b)
+typedef struct orientation
+{
+  uint8_t *turn, *seen; /* per face */
+  aqr_index* queue;     /* the component's faces */
+  size_t n;
+  bool any; /* is turned */
+} orientation;
+
+/* Gathers the component of a face, each face turned to agree with the one it is reached from. Edges over which no
+ * choice agrees (Moebius) are cut. */
+static aqr_status gather_component(builder* b, orientation* o, aqr_index start, size_t* n_turned)
+{
+  aqr_surface* s = b->s;
+  o->n = *n_turned = 0;
+  o->seen[start] = 1;
+  o->queue[o->n++] = start;
+  for (size_t i = 0; i < o->n; i++)
+  {
+    aqr_index f = o->queue[i];
+    if (!aqr_worked(b->c, 8))
+      return AQR_CANCELLED;
+    *n_turned += o->turn[f];
+    for (unsigned k = 0; k < 3; k++)
+    {
+      aqr_index h = 3 * f + k, t = s->twin[h];
+      if (t == AQR_NONE)
+        continue;
+      uint8_t wanted = o->turn[f] ^ (uint8_t)!runs_against(s, h, t);
+      if (!o->seen[t / 3])
+      {
+        o->seen[t / 3] = 1;
+        o->turn[t / 3] = wanted;
+        o->queue[o->n++] = t / 3;
+      }
+      else if (o->turn[t / 3] != wanted)
+      {
+        s->twin[h] = s->twin[t] = AQR_NONE;
+        b->report->unorientable_edges++;
+      }
+    }
+  }
+  return AQR_OK;
+}
+
+/* The side that most faces of a component had wins. */
+static void choose_side(builder* b, orientation* o, size_t n_turned)
+{
+  bool other = 2 * n_turned > o->n;
+  for (size_t i = 0; i < o->n; i++)
+  {
+    aqr_index f = o->queue[i];
+    o->turn[f] ^= other;
+    b->report->flipped_triangles += o->turn[f];
+    o->any |= o->turn[f];
+  }
+}
+
+static aqr_status turn_faces(builder* b, const uint8_t* turn)
 {
   aqr_surface* s = b->s;
   size_t n = s->n_faces;
   aqr_status status = AQR_OK;
-  uint8_t *turn = AQR_NEW0(b->c, uint8_t, n), *seen = AQR_NEW0(b->c, uint8_t, n);
-  aqr_index *queue = AQR_NEW(b->c, aqr_index, n), *twin = NULL;
-  AQR_REQUIRE(turn && seen && queue, AQR_OUT_OF_MEMORY);
-  bool any = false;
-  for (aqr_index start = 0; start < n; start++)
+  aqr_index* twin = AQR_NEW(b->c, aqr_index, 3 * n);
+  AQR_REQUIRE(twin, AQR_OUT_OF_MEMORY);
+  for (aqr_index h = 0; h < 3 * n; h++)
   {
-    if (seen[start])
-      continue;
-    size_t head = 0, tail = 0, n_turned = 0;
-    seen[start] = 1;
-    queue[tail++] = start;
-    while (head < tail)
-    {
-      aqr_index f = queue[head++];
-      if (head % 65536 == 0)
-        AQR_REQUIRE(aqr_step(b->c, 0.5), AQR_CANCELLED);
-      n_turned += turn[f];
-      for (unsigned k = 0; k < 3; k++)
-      {
-        aqr_index h = 3 * f + k, t = s->twin[h];
-        if (t == AQR_NONE)
-          continue;
-        uint8_t wanted = turn[f] ^ (uint8_t)!runs_against(s, h, t);
-        if (!seen[t / 3])
-        {
-          seen[t / 3] = 1;
-          turn[t / 3] = wanted;
-          queue[tail++] = t / 3;
-        }
-        else if (turn[t / 3] != wanted)
-        {
-          s->twin[h] = s->twin[t] = AQR_NONE;
-          b->report->unorientable_edges++;
-        }
-      }
-    }
-    b->report->components++;
-    bool other = 2 * n_turned > tail;
-    for (size_t i = 0; i < tail; i++)
-    {
-      turn[queue[i]] ^= other;
-      b->report->flipped_triangles += turn[queue[i]];
-      any |= turn[queue[i]];
-    }
+    AQR_REQUIRE(aqr_worked(b->c, 1), AQR_CANCELLED);
+    twin[turned(h, turn)] = s->twin[h] == AQR_NONE ? AQR_NONE : turned(s->twin[h], turn);
   }
-  if (any)
-  {
-    twin = AQR_NEW(b->c, aqr_index, 3 * n);
-    AQR_REQUIRE(twin, AQR_OUT_OF_MEMORY);
-    for (aqr_index h = 0; h < 3 * n; h++)
-      twin[turned(h, turn)] = s->twin[h] == AQR_NONE ? AQR_NONE : turned(s->twin[h], turn);
-    for (aqr_index f = 0; f < n; f++)
-      if (turn[f])
-      {
-        aqr_index swap = s->corner[3 * f + 1];
-        s->corner[3 * f + 1] = s->corner[3 * f + 2];
-        s->corner[3 * f + 2] = swap;
-      }
-    memcpy(s->twin, twin, 3 * n * sizeof *twin);
-  }
+  for (aqr_index f = 0; f < n; f++)
+    if (turn[f])
+    {
+      aqr_index swap = s->corner[3 * f + 1];
+      s->corner[3 * f + 1] = s->corner[3 * f + 2];
+      s->corner[3 * f + 2] = swap;
+    }
+  memcpy(s->twin, twin, 3 * n * sizeof *twin);
 done:
   AQR_DROP(b->c, twin, 3 * n);
-  AQR_DROP(b->c, turn, n);
-  AQR_DROP(b->c, seen, n);
-  AQR_DROP(b->c, queue, n);
+  return status;
+}
+
+/* Turns faces so that neighbours agree. */
+static aqr_status orient(builder* b)
+{
+  size_t n = b->s->n_faces, n_turned;
+  aqr_status status = AQR_OK;
+  orientation o = {
+    .turn = AQR_NEW0(b->c, uint8_t, n), .seen = AQR_NEW0(b->c, uint8_t, n), .queue = AQR_NEW(b->c, aqr_index, n)
+  };
+  AQR_REQUIRE(o.turn && o.seen && o.queue, AQR_OUT_OF_MEMORY);
+  for (aqr_index start = 0; start < n; start++)
+  {
+    if (o.seen[start])
+      continue;
+    AQR_TRY(gather_component(b, &o, start, &n_turned));
+    choose_side(b, &o, n_turned);
+    b->report->components++;
+  }
+  if (o.any)
+    AQR_TRY(turn_faces(b, o.turn));
+done:
+  AQR_DROP(b->c, o.turn, n);
+  AQR_DROP(b->c, o.seen, n);
+  AQR_DROP(b->c, o.queue, n);
   return status;
 }
 

@@ -363,78 +363,100 @@ static unsigned foremost_edge(const aqr_chart* chart, aqr_complex d)
   return best;
 }
 
+/* Where the way out of a face is. */
+typedef struct way_out
+{
+  unsigned k; /* edge of the chart's face */
+  double at;  /* fraction of it */
+  aqr_complex p;
+  double reach; /* from the point */
+} way_out;
+
+/* vertex: corner that the point stands on, 3 for none. */
+static way_out find_way_out(aqr_tracer* t, aqr_complex d, unsigned vertex)
+{
+  const aqr_chart* chart = &t->chart;
+  way_out w = { .at = 0.5 };
+  double side[3];
+  w.k = vertex < 3 ? opposite_edge(chart, vertex, d, &w.at) : exit_edge(chart, t->x, d, side);
+  if (w.k == 3) /* beside its triangle by rounding: a little towards the middle it sees an edge again */
+  {
+    aqr_complex to = cx_sub(middle(chart), t->x);
+    t->x = cx_madd(t->x, inward, to);
+    w.k = exit_edge(chart, t->x, d, side);
+  }
+  if (w.k == 3) /* a triangle without area: over the middle of the edge that lies farthest ahead */
+    w.k = foremost_edge(chart, d);
+  else if (vertex == 3)
+    w.at = side[w.k] / (side[w.k] - side[(w.k + 1) % 3]);
+  aqr_complex q = chart->q[w.k], e = cx_sub(chart->q[(w.k + 1) % 3], q);
+  w.p = cx_madd(q, w.at, e);
+  w.reach = cx_dot(d, cx_sub(w.p, t->x));
+  if (w.reach < 0 && cx_cross(d, cx_unit(e)) < parallel)
+  {
+    /* along the very edge it stands on, on its outer side by rounding: over it where it stands */
+    w.at = lesser(1, greater(0, cx_dot(cx_sub(t->x, q), e) / cx_dot(e, e)));
+    w.p = t->x;
+  }
+  w.reach = greater(0, w.reach);
+  return w;
+}
+
+/* Over the edge into the face beside it, unless there is none. */
+static aqr_status pass_edge(aqr_context* c, aqr_tracer* t, const way_out* w, bool recording, aqr_advance* result)
+{
+  aqr_index h = 3 * t->chart.face + w->k, twin = aqr_twin(t->surface, h);
+  *result = twin == AQR_NONE ? AQR_AT_BORDER : AQR_INSIDE;
+  if (recording)
+  {
+    aqr_status status = record(c, t, h, w->at, twin == AQR_NONE ? t->chart.face : aqr_face_of(twin));
+    if (status != AQR_OK)
+      return status;
+  }
+  if (twin != AQR_NONE)
+  {
+    aqr_chart next;
+    aqr_chart_unfold(t, &t->chart, w->k, &next);
+    t->chart = next;
+  }
+  return AQR_OK;
+}
+
 /* Moves the point straight along d. The chart, and with it the meaning of d, stays unfolded into
  * one plane. */
 static aqr_status move(aqr_context* c, aqr_tracer* t, aqr_complex d, double length, bool recording, aqr_advance* result)
 {
-  const aqr_surface* s = t->surface;
   unsigned vertex = 3; /* corner that the point stands on, just passed; 3: none */
+  aqr_status status = AQR_OK;
   *result = AQR_INSIDE;
-  const int most = most_faces + 4 * (int)sqrt((double)s->n_faces);
+  const int most = most_faces + 4 * (int)sqrt((double)t->surface->n_faces);
   for (int i = 0; i < most; i++)
   {
-    double side[3], at = 0.5;
     t->crossed++;
-    unsigned k = vertex < 3 ? opposite_edge(&t->chart, vertex, d, &at) : exit_edge(&t->chart, t->x, d, side);
-    if (k == 3) /* beside its triangle by rounding: a little towards the middle it sees an edge again */
-    {
-      aqr_complex to = cx_sub(middle(&t->chart), t->x);
-      t->x = cx_madd(t->x, inward, to);
-      k = exit_edge(&t->chart, t->x, d, side);
-    }
-    if (k == 3) /* a triangle without area: over the middle of the edge that lies farthest ahead */
-      k = foremost_edge(&t->chart, d);
-    else if (vertex == 3)
-      at = side[k] / (side[k] - side[(k + 1) % 3]);
+    way_out w = find_way_out(t, d, vertex);
     vertex = 3;
-    unsigned j = (k + 1) % 3;
-    aqr_complex exit = cx_madd(t->chart.q[k], at, cx_sub(t->chart.q[j], t->chart.q[k]));
-    double reach = cx_dot(d, cx_sub(exit, t->x));
-    if (reach < 0 && cx_cross(d, cx_unit(cx_sub(t->chart.q[j], t->chart.q[k]))) < parallel)
-    {
-      /* along the very edge it stands on, on its outer side by rounding: over it where it stands */
-      aqr_complex e = cx_sub(t->chart.q[j], t->chart.q[k]);
-      at = lesser(1, greater(0, cx_dot(cx_sub(t->x, t->chart.q[k]), e) / cx_dot(e, e)));
-      exit = t->x;
-    }
-    reach = greater(0, reach);
     if (recording)
-      t->travelled += lesser(length, reach);
-    if (reach >= length)
+      t->travelled += lesser(length, w.reach);
+    if (w.reach >= length)
     {
       t->x = cx_madd(t->x, length, d);
       return AQR_OK;
     }
-    length -= reach;
-    aqr_index h = 3 * t->chart.face + k;
-    t->x = exit;
-    if (at < vertex_band || at > 1 - vertex_band)
+    length -= w.reach;
+    t->x = w.p;
+    if (w.at < vertex_band || w.at > 1 - vertex_band)
     {
-      aqr_status status = pass_vertex(c, t, at < vertex_band ? k : j, d, recording, result, &vertex);
-      if (status != AQR_OK)
-        return status;
+      AQR_TRY(pass_vertex(c, t, w.at < vertex_band ? w.k : (w.k + 1) % 3, d, recording, result, &vertex));
       if (*result == AQR_INSIDE)
         continue;
     }
-    aqr_index twin = aqr_twin(s, h);
-    if (recording)
-    {
-      aqr_status status = record(c, t, h, at, twin == AQR_NONE ? t->chart.face : aqr_face_of(twin));
-      if (status != AQR_OK)
-        return status;
-    }
-    if (twin == AQR_NONE)
-    {
-      *result = AQR_AT_BORDER;
+    AQR_TRY(pass_edge(c, t, &w, recording, result));
+    if (*result == AQR_AT_BORDER)
       return AQR_OK;
-    }
-    aqr_chart next;
-    aqr_chart_unfold(t, &t->chart, k, &next);
-    t->chart = next;
-    *result = AQR_INSIDE;
   }
   t->lost = true;
-  return AQR_OK;
+done:
+  return status;
 }
 
 aqr_status aqr_tracer_straight(aqr_context* c, aqr_tracer* t, double length, aqr_advance* result)
