@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The VTK module itself, run by vtk_module_build().
 set(filter "${CMAKE_CURRENT_LIST_DIR}/vtkAnisotropicQuadRemesher")
+set(parts AttributeTransfer InputSurface KeptSurfaces RunReport)
+list(TRANSFORM parts PREPEND "${CMAKE_CURRENT_LIST_DIR}/")
+list(TRANSFORM parts APPEND ".cxx" OUTPUT_VARIABLE sources)
+list(TRANSFORM parts APPEND ".h" OUTPUT_VARIABLE headers)
 vtk_module_add_module(AnisotropicQuadRemesher::AnisotropicQuadRemesher
-  SOURCES "${filter}.cxx" "${CMAKE_CURRENT_LIST_DIR}/AttributeTransfer.cxx" "${CMAKE_CURRENT_LIST_DIR}/InputSurface.cxx"
-  PRIVATE_HEADERS "${CMAKE_CURRENT_LIST_DIR}/AttributeTransfer.h" "${CMAKE_CURRENT_LIST_DIR}/InputSurface.h"
-    "${CMAKE_CURRENT_LIST_DIR}/ToolkitVersion.h"
+  SOURCES "${filter}.cxx" ${sources}
+  PRIVATE_HEADERS ${headers} "${CMAKE_CURRENT_LIST_DIR}/ToolkitVersion.h"
   HEADERS "${filter}.h")
 # The header lies below vtk.module's directory, where the wrappers do not look by themselves.
 vtk_module_include(AnisotropicQuadRemesher::AnisotropicQuadRemesher

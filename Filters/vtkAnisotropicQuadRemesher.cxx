@@ -2,11 +2,11 @@
 #include "vtkAnisotropicQuadRemesher.h"
 
 #include "AttributeTransfer.h"
-#include "InputSurface.h"
+#include "KeptSurfaces.h"
+#include "RunReport.h"
 #include "ToolkitVersion.h"
 #include "aqr.h"
 
-#include "vtkAlgorithmOutput.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataSet.h"
@@ -29,10 +29,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <list>
-#include <sstream>
-#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkAnisotropicQuadRemesher);
@@ -152,279 +148,13 @@ vtkSmartPointer<vtkPolyData> NewConfidence(vtkPolyData* surface, const aqr_field
   return confidence;
 }
 
-//------------------------------------------------------------------------------
-std::string Quoted(const std::string& text)
-{
-  std::string quoted = "\"";
-  for (const char c : text)
-  {
-    if (c == '"' || c == '\\')
-    {
-      quoted += '\\';
-    }
-    quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return quoted + '"';
-}
-
-//------------------------------------------------------------------------------
-// What the ports of the field are made of: where nothing of it changes they serve again.
-struct FieldSources
-{
-  vtkSmartPointer<vtkPointData> PointData; // kept, as all objects here, so that no other can take its address
-  vtkSmartPointer<vtkCellData> CellData;
-  vtkMTimeType Time = 0;
-  int Precision = 0;
-  uint64_t Revision = 0;
-
-  FieldSources() = default;
-  FieldSources(vtkPolyData* input, const aqr_field_view& field)
-    : PointData(input->GetPointData())
-    , CellData(input->GetCellData())
-    , Time(std::max(PointData->GetMTime(), CellData->GetMTime()))
-    , Precision(input->GetPoints()->GetDataType())
-    , Revision(field.revision)
-  {
-  }
-  bool operator==(const FieldSources& other) const
-  {
-    return this->PointData == other.PointData && this->CellData == other.CellData && this->Time == other.Time &&
-           this->Precision == other.Precision && this->Revision == other.Revision;
-  }
-};
-
-//------------------------------------------------------------------------------
-// One surface and the stages computed for it.
-struct Slot
-{
-  aqr_remesher* Remesher = nullptr;
-  InputSurface Surface;
-  vtkSmartPointer<vtkPoints> Points; // none where the remesher holds no surface
-  SurfaceTimes Times = {};
-  std::vector<int64_t> Locked;
-  SurfaceDigest Digest = {};
-  unsigned long Turn = 0;
-  FieldSources FieldMadeOf;
-  vtkSmartPointer<vtkPolyData> Directions; // the last outputs of their ports, or none
-  vtkSmartPointer<vtkPolyData> Confidence;
-
-  Slot() = default;
-  Slot(const Slot&) = delete;
-  void operator=(const Slot&) = delete;
-  ~Slot() { aqr_remesher_free(this->Remesher); }
-
-  aqr_status SetHooks(const aqr_hooks& hooks)
-  {
-    if (this->Remesher)
-    {
-      aqr_remesher_set_hooks(this->Remesher, &hooks);
-      return AQR_OK;
-    }
-    return aqr_remesher_new(&hooks, &this->Remesher);
-  }
-};
 }
 
 //------------------------------------------------------------------------------
 class vtkAnisotropicQuadRemesher::vtkInternals
 {
 public:
-  // The executive runs a filter for polygonal data once for each block of a composite data set, after it has
-  // asked for the whole. The surfaces of the last turn are kept, since the next brings them again.
-  void BeginBlocks(vtkAlgorithmOutput* connection)
-  {
-    if (this->TurnIsUsed)
-    {
-      this->Slots.remove_if([&](const Slot& slot) { return slot.Turn != this->Turn; });
-      this->Turn++;
-      this->TurnIsUsed = false;
-    }
-    this->Blocks = connection;
-  }
-
-  // Makes current the slot that holds this surface, or else hands the surface to the one longest unused.
-  aqr_status SetInput(vtkPolyData* input, const aqr_hooks& hooks)
-  {
-    const SurfaceTimes times = TimesOf(input);
-    const auto unchanged = [&](const Slot& slot)
-    { return slot.Points && slot.Times == times && slot.Locked == this->Locked; };
-    auto found = std::find_if(this->Slots.begin(), this->Slots.end(), unchanged);
-    SurfaceDigest digest = {};
-    if (found == this->Slots.end())
-    {
-      digest = DigestOf(input);
-      found = std::find_if(this->Slots.begin(), this->Slots.end(),
-        [&](const Slot& slot) { return slot.Points && slot.Digest == digest && slot.Locked == this->Locked; });
-    }
-    const bool known = found != this->Slots.end();
-    if (known)
-    {
-      this->Slots.splice(this->Slots.begin(), this->Slots, found);
-    }
-    else if (this->Slots.empty() || this->InBlocks)
-    {
-      this->Slots.emplace_front();
-    }
-    else
-    {
-      this->Slots.splice(this->Slots.begin(), this->Slots, std::prev(this->Slots.end()));
-    }
-    if (!this->InBlocks)
-    {
-      this->Slots.resize(1);
-    }
-    Slot& slot = this->Slots.front();
-    slot.Turn = this->Turn;
-    this->TurnIsUsed = true;
-    aqr_status status = slot.SetHooks(hooks);
-    if (status == AQR_OK && !known)
-    {
-      slot.Points = nullptr;
-      status = slot.Surface.Give(input, this->Locked, slot.Remesher);
-      slot.Digest = digest;
-      slot.Locked = this->Locked;
-    }
-    if (status == AQR_OK)
-    {
-      slot.Points = input->GetPoints();
-      slot.Times = times;
-    }
-    return status;
-  }
-
-  aqr_remesher* Remesher() const { return this->Slots.empty() ? nullptr : this->Slots.front().Remesher; }
-  const InputSurface& Surface() const { return this->Slots.front().Surface; }
-  Slot& Current() { return this->Slots.front(); }
-
-  std::string Counts() const
-  {
-    const aqr_report* report = aqr_remesher_report(this->Remesher());
-    std::ostringstream text;
-    text << "{\"degenerate_triangles\": " << report->degenerate_triangles
-         << ", \"duplicate_triangles\": " << report->duplicate_triangles
-         << ", \"merged_points\": " << report->merged_points << ", \"unused_points\": " << report->unused_points
-         << ", \"split_edges\": " << report->split_edges << ", \"split_points\": " << report->split_points
-         << ", \"flipped_triangles\": " << report->flipped_triangles
-         << ", \"unorientable_edges\": " << report->unorientable_edges
-         << ", \"refined_points\": " << report->refined_points << ", \"feature_edges\": " << report->feature_edges
-         << ", \"given_up_edges\": " << report->given_up_edges << ", \"locked_edges\": " << report->locked_edges
-         << ", \"locked_missed\": " << report->locked_missed << ", \"boundary_loops\": " << report->boundary_loops
-         << ", \"components\": " << report->components << ", \"lines\": " << report->lines
-         << ", \"line_samples\": " << report->line_samples << ", \"proximity_queries\": " << report->proximity_queries
-         << ", \"faces_crossed\": " << report->faces_crossed << ", \"bounded_points\": " << report->bounded_points
-         << ", \"topology_cuts\": " << report->topology_cuts
-         << ", \"coarsened_components\": " << report->coarsened_components
-         << ", \"topology_lost\": " << report->topology_lost << ", \"asymmetric_points\": " << report->asymmetric_points
-         << ", \"target_missed\": " << report->target_missed << ", \"tolerance\": " << report->tolerance
-         << ", \"feature_rms\": " << report->feature_rms << ", \"feature_max\": " << report->feature_max
-         << ", \"boundary_rms\": " << report->boundary_rms << ", \"boundary_max\": " << report->boundary_max;
-    if (const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher()))
-    {
-      size_t sides[3] = { 0, 0, 0 };
-      for (size_t f = 0; f < mesh->number_of_faces; ++f)
-      {
-        sides[std::clamp<int64_t>(mesh->offsets[f + 1] - mesh->offsets[f], 3, 5) - 3]++;
-      }
-      text << ", \"points\": " << mesh->number_of_points << ", \"faces\": " << mesh->number_of_faces
-           << ", \"triangles\": " << sides[0] << ", \"quads\": " << sides[1] << ", \"larger_polygons\": " << sides[2];
-    }
-    text << "}";
-    return text.str();
-  }
-
-  std::string Stages() const
-  {
-    size_t count = 0;
-    const aqr_stage* stages = aqr_remesher_stages(this->Remesher(), &count);
-    std::ostringstream text;
-    text << "[";
-    for (size_t i = 0; i < count; ++i)
-    {
-      text << (i ? ", " : "") << "{\"name\": " << Quoted(stages[i].name) << ", \"seconds\": " << stages[i].seconds
-           << ", \"peak_bytes\": " << stages[i].peak_bytes << ", \"end_bytes\": " << stages[i].end_bytes
-           << ", \"reused\": " << (stages[i].reused ? "true" : "false") << "}";
-    }
-    text << "]";
-    return text.str();
-  }
-
-  // Sentences about everything that was not as it should be.
-  void CollectWarnings(vtkPolyData* input, bool lockLines)
-  {
-    const aqr_report* report = aqr_remesher_report(this->Remesher());
-    const std::pair<size_t, const char*> repairs[] = {
-      { report->degenerate_triangles, "degenerate triangles dropped" },
-      { report->duplicate_triangles, "duplicate triangles dropped" },
-      { report->split_edges, "non-manifold edges cut apart" },
-      { report->split_points, "non-manifold points cut apart" },
-      { report->flipped_triangles, "triangles turned to agree with their neighbours" },
-      { report->unorientable_edges, "edges cut because no orientation agrees across them" },
-    };
-    std::string list;
-    for (const auto& repair : repairs)
-    {
-      if (repair.first)
-      {
-        list += (list.empty() ? "" : ", ") + std::to_string(repair.first) + " " + repair.second;
-      }
-    }
-    this->Warnings.clear();
-    if (!list.empty())
-    {
-      this->Warnings.push_back("The input was repaired: " + list + ".");
-    }
-    const vtkIdType lines = lockLines ? 0 : input->GetNumberOfLines();
-    if (input->GetNumberOfVerts() + lines > 0)
-    {
-      this->Warnings.push_back("Vertices and lines of the input were passed over: " +
-                               std::to_string(input->GetNumberOfVerts()) + " and " + std::to_string(lines) + " cells.");
-    }
-    if (report->locked_missed)
-    {
-      this->Warnings.push_back(std::to_string(report->locked_missed) + " of " +
-                               std::to_string(this->Locked.size() / 2) +
-                               " locked edges are no edges of the input's polygons and were passed over.");
-    }
-    if (report->given_up_edges)
-    {
-      this->Warnings.push_back("So few points cannot follow all creases: " + std::to_string(report->given_up_edges) +
-                               " edges of those that bend the surface least are no feature lines.");
-    }
-    if (report->coarsened_components)
-    {
-      this->Warnings.push_back(std::to_string(report->coarsened_components) +
-                               " components were too small to carry lines at this density and were decimated instead.");
-    }
-    if (report->asymmetric_points)
-    {
-      this->Warnings.push_back(std::to_string(report->asymmetric_points) +
-                               " points of the input have no other at their mirror image: the output is what lies on "
-                               "the positive side of the plane of symmetry, and its image.");
-    }
-    if (report->topology_lost)
-    {
-      this->Warnings.push_back("No attempt kept the input's topology: the output has another Euler number.");
-    }
-    const aqr_mesh* mesh = aqr_remesher_mesh(this->Remesher());
-    if (report->bounded_points)
-    {
-      this->Warnings.push_back("The largest spacing is smaller than the input can carry at " +
-                               std::to_string(report->bounded_points) +
-                               " of its points: lines stay a quarter of the distance of the points apart there.");
-    }
-    if (report->target_missed && mesh)
-    {
-      this->Warnings.push_back("The target number of points could not be met within 5 percent: the boundary, the "
-                               "features or the topology of the input ask for another number. The output has " +
-                               std::to_string(mesh->number_of_points) + " points.");
-    }
-  }
-
-  std::list<Slot> Slots; // the current one first
-  bool InBlocks = false;
-  vtkAlgorithmOutput* Blocks = nullptr; // only compared: the connection that last had a composite data set
-  unsigned long Turn = 0;
-  bool TurnIsUsed = false;
+  KeptSurfaces Kept;
   std::vector<double> DensityScale;
   std::vector<int64_t> Locked; // the points at the ends of every edge that lines lock
   std::vector<std::string> Warnings;
@@ -553,10 +283,10 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
   hooks.parallel_for = this->NumberOfThreads == 1 ? nullptr : ParallelFor;
   const auto run = [&]
   {
-    status = internals.SetInput(input, hooks);
+    status = internals.Kept.SetInput(input, internals.Locked, hooks);
     if (status == AQR_OK)
     {
-      status = aqr_remesher_run(internals.Remesher(), &options);
+      status = aqr_remesher_run(internals.Kept.Remesher(), &options);
     }
   };
   // The backend named here is in every VTK since 9.1, whereas the default one may be sequential.
@@ -567,7 +297,7 @@ int vtkAnisotropicQuadRemesher::RunKernels(vtkPolyData* input)
 //------------------------------------------------------------------------------
 void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* output)
 {
-  const aqr_mesh* mesh = aqr_remesher_mesh(this->Internals->Remesher());
+  const aqr_mesh* mesh = aqr_remesher_mesh(this->Internals->Kept.Remesher());
   const int precision = input->GetPoints()->GetDataType();
   output->SetPoints(NewPoints(mesh->points, mesh->number_of_points, precision));
   output->SetPolys(NewCells(mesh->offsets, mesh->number_of_faces, mesh->connectivity));
@@ -578,7 +308,7 @@ void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* o
   pointData->AddArray(NewArray<vtkFloatArray>("Normals", mesh->normals, mesh->number_of_points, 3));
   pointData->AddArray(NewArray<vtkSignedCharArray>("PointKind", mesh->point_kind, mesh->number_of_points));
 
-  const auto sources = SourceCells(this->Internals->Surface(), mesh->face_source, mesh->number_of_faces);
+  const auto sources = SourceCells(this->Internals->Kept.Surface(), mesh->face_source, mesh->number_of_faces);
   CopyCellData(input->GetCellData(), sources, output->GetCellData());
   std::vector<int> sides(mesh->number_of_faces);
   for (size_t f = 0; f < mesh->number_of_faces; ++f)
@@ -592,48 +322,48 @@ void vtkAnisotropicQuadRemesher::FillRemeshed(vtkPolyData* input, vtkPolyData* o
 //------------------------------------------------------------------------------
 void vtkAnisotropicQuadRemesher::FillField(vtkPolyData* input, vtkPolyData* directions, vtkPolyData* confidence)
 {
-  Slot& slot = this->Internals->Current();
-  const aqr_field_view* field = aqr_remesher_field(slot.Remesher);
+  KeptSurface& kept = this->Internals->Kept.Current();
+  const aqr_field_view* field = aqr_remesher_field(kept.Remesher);
   if (!field) // neither is asked for
   {
-    slot.Directions = nullptr;
-    slot.Confidence = nullptr;
+    kept.Directions = nullptr;
+    kept.Confidence = nullptr;
     return;
   }
   const FieldSources sources(input, *field);
-  const bool hold = sources == slot.FieldMadeOf;
+  const bool hold = sources == kept.FieldMadeOf;
   if (!hold || !this->GenerateDirections)
   {
-    slot.Directions = nullptr;
+    kept.Directions = nullptr;
   }
   if (!hold || !this->GenerateConfidence)
   {
-    slot.Confidence = nullptr;
+    kept.Confidence = nullptr;
   }
-  slot.FieldMadeOf = sources;
-  const bool makeDirections = this->GenerateDirections && !slot.Directions;
-  const bool makeConfidence = this->GenerateConfidence && !slot.Confidence;
+  kept.FieldMadeOf = sources;
+  const bool makeDirections = this->GenerateDirections && !kept.Directions;
+  const bool makeConfidence = this->GenerateConfidence && !kept.Confidence;
   if (makeDirections || makeConfidence)
   {
-    const auto surface = NewFieldSurface(input, slot.Surface, *field);
-    slot.Directions = makeDirections ? NewDirections(surface, *field) : slot.Directions;
-    slot.Confidence = makeConfidence ? NewConfidence(surface, *field) : slot.Confidence;
+    const auto surface = NewFieldSurface(input, kept.Surface, *field);
+    kept.Directions = makeDirections ? NewDirections(surface, *field) : kept.Directions;
+    kept.Confidence = makeConfidence ? NewConfidence(surface, *field) : kept.Confidence;
   }
-  if (slot.Directions)
+  if (kept.Directions)
   {
-    directions->ShallowCopy(slot.Directions);
+    directions->ShallowCopy(kept.Directions);
   }
-  if (slot.Confidence)
+  if (kept.Confidence)
   {
-    confidence->ShallowCopy(slot.Confidence);
+    confidence->ShallowCopy(kept.Confidence);
   }
 }
 
 //------------------------------------------------------------------------------
 void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* output)
 {
-  const aqr_lines_view* lines = aqr_remesher_lines(this->Internals->Remesher());
-  const aqr_field_view* field = aqr_remesher_field(this->Internals->Remesher());
+  const aqr_lines_view* lines = aqr_remesher_lines(this->Internals->Kept.Remesher());
+  const aqr_field_view* field = aqr_remesher_field(this->Internals->Kept.Remesher());
   const size_t points = lines->number_of_points;
   const size_t count = lines->number_of_lines;
   std::vector<int64_t> order(std::max(points, count));
@@ -648,7 +378,7 @@ void vtkAnisotropicQuadRemesher::FillLines(vtkPolyData* input, vtkPolyData* outp
   std::vector<vtkIdType> cells(points);
   for (size_t p = 0; p < points; ++p)
   {
-    cells[p] = this->Internals->Surface().Cell(field->triangle_source[lines->triangle[p]]);
+    cells[p] = this->Internals->Kept.Surface().Cell(field->triangle_source[lines->triangle[p]]);
   }
   pointData->AddArray(NewArray<vtkDoubleArray>("Curvature", lines->curvature, points));
   pointData->AddArray(NewArray<vtkDoubleArray>("ArcLength", lines->arc_length, points));
@@ -678,7 +408,7 @@ vtkTypeBool vtkAnisotropicQuadRemesher::ProcessRequest(
   if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
       vtkCompositeDataSet::SafeDownCast(vtkDataObject::GetData(inputVector[0], 0)))
   {
-    this->Internals->BeginBlocks(this->GetInputConnection(0, 0));
+    this->Internals->Kept.BeginBlocks(this->GetInputConnection(0, 0));
   }
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
@@ -696,12 +426,12 @@ int vtkAnisotropicQuadRemesher::RequestData(
   }
   vtkInternals& internals = *this->Internals;
   internals.Warnings.clear();
-  internals.InBlocks = internals.Blocks && internals.Blocks == this->GetInputConnection(0, 0);
+  internals.Kept.Begin(this->GetInputConnection(0, 0));
   this->SetErrorCode(vtkErrorCode::NoError);
 
   if (input->GetNumberOfPoints() == 0 || input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
   {
-    if (internals.InBlocks)
+    if (internals.Kept.AreBlocks())
     {
       return 1; // blocks and pieces of a larger data set may well be empty
     }
@@ -721,7 +451,7 @@ int vtkAnisotropicQuadRemesher::RequestData(
   }
   if (status != AQR_OK)
   {
-    const std::string detail = internals.Remesher() ? aqr_remesher_message(internals.Remesher()) : "";
+    const std::string detail = internals.Kept.Remesher() ? aqr_remesher_message(internals.Kept.Remesher()) : "";
     vtkErrorMacro(<< aqr_status_string(status) << (detail.empty() ? "" : ": ") << detail);
     this->SetErrorCode(vtkErrorCode::UserError + status);
     return 1;
@@ -738,7 +468,7 @@ int vtkAnisotropicQuadRemesher::RequestData(
     output->GetFieldData()->PassData(input->GetFieldData());
   }
 
-  internals.CollectWarnings(input, this->LockLines);
+  internals.Warnings = WarningsOf(internals.Kept.Remesher(), input, this->LockLines, internals.Locked.size() / 2);
   if (!internals.Warnings.empty())
   {
     std::string all;
@@ -754,17 +484,8 @@ int vtkAnisotropicQuadRemesher::RequestData(
 //------------------------------------------------------------------------------
 std::string vtkAnisotropicQuadRemesher::GetReport() const
 {
-  if (!this->Internals->Remesher())
-  {
-    return "{}";
-  }
-  std::string warnings;
-  for (const std::string& warning : this->Internals->Warnings)
-  {
-    warnings += (warnings.empty() ? "" : ", ") + Quoted(warning);
-  }
-  return "{\"counts\": " + this->Internals->Counts() + ", \"warnings\": [" + warnings +
-         "], \"stages\": " + this->Internals->Stages() + "}";
+  const aqr_remesher* remesher = this->Internals->Kept.Remesher();
+  return remesher ? ReportOf(remesher, this->Internals->Warnings) : "{}";
 }
 
 //------------------------------------------------------------------------------
