@@ -58,8 +58,8 @@ static aqr_status build(
   aqr_index* ids = AQR_NEW(c, aqr_index, 3 * n);
   aqr_index* corner = AQR_NEW(c, aqr_index, 3 * n);
   size_t* offsets = AQR_NEW(c, size_t, n + 1);
-  aqr_vertex* vertices = AQR_NEW0(c, aqr_vertex, 3 * n);
-  AQR_REQUIRE(ids && corner && offsets && vertices, AQR_OUT_OF_MEMORY);
+  aqr_vertex* vertices = NULL;
+  AQR_REQUIRE(ids && corner && offsets, AQR_OUT_OF_MEMORY);
   for (size_t i = 0; i < 3 * n; i++)
   {
     aqr_index p = s->corner[3 * (size_t)faces[i / 3] + i % 3];
@@ -69,6 +69,8 @@ static aqr_status build(
   for (size_t i = 0; i < 3 * n; i++)
     if (i == 0 || ids[i] != ids[n_ids - 1])
       ids[n_ids++] = ids[i];
+  vertices = AQR_NEW0(c, aqr_vertex, n_ids);
+  AQR_REQUIRE(vertices, AQR_OUT_OF_MEMORY);
   for (size_t i = 0; i <= n; i++)
     offsets[i] = 3 * i;
   for (size_t i = 0; i < 3 * n; i++)
@@ -85,6 +87,7 @@ static aqr_status build(
   }
   for (size_t i = 0; i < n_ids; i++)
   {
+    AQR_REQUIRE(aqr_worked(c, 8), AQR_CANCELLED);
     const aqr_place* at = &vertices[i].place;
     aqr_index p = s->corner[3 * at->face + (at->bary[0] > 0 ? 0 : at->bary[1] > 0 ? 1 : 2)];
     vertices[i].normal = v3_unit_or(vertices[i].normal, v3_load(field->normal + 3 * (size_t)p));
@@ -93,6 +96,7 @@ static aqr_status build(
   for (size_t i = 0; i < n; i++)
   {
     aqr_index h = k->mesh.faces[i];
+    AQR_REQUIRE(aqr_worked(c, 8), AQR_CANCELLED);
     for (unsigned j = 0; j < 3; j++, h = aqr_pm_next(&k->mesh, h))
       if (aqr_pm_face(&k->mesh, h ^ 1) != AQR_NONE && aqr_is_seam(s, 3 * faces[i] + j))
         k->mesh.edge_type[h >> 1] = AQR_LINE_FEATURE;
@@ -101,7 +105,7 @@ done:
   AQR_DROP(c, ids, 3 * n);
   AQR_DROP(c, corner, 3 * n);
   AQR_DROP(c, offsets, n + 1);
-  AQR_DROP(c, vertices, 3 * n);
+  AQR_DROP(c, vertices, n_ids);
   return status;
 }
 

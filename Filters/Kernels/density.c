@@ -54,6 +54,7 @@ static aqr_status add_bare_components(aqr_remesher* r, const uint8_t* is_bare)
     faces[n++] = f;
     for (size_t i = 0; i < n; i++)
     {
+      AQR_REQUIRE(aqr_worked(c, 16), AQR_CANCELLED);
       double third = v3_norm(aqr_face_cross(s, faces[i])) / 6;
       for (unsigned k = 0; k < 3; k++)
       {

@@ -67,12 +67,15 @@ aqr_status aqr_pm_append(aqr_context* c, aqr_polygon_mesh* m, const aqr_vertex* 
   AQR_REQUIRE(sides && half_edge, AQR_OUT_OF_MEMORY);
   AQR_REQUIRE(n < (AQR_NONE - base) / 2, AQR_TOO_LARGE);
   for (size_t f = 0; f < n_faces; f++)
+  {
+    AQR_REQUIRE(aqr_worked(c, 8), AQR_CANCELLED);
     for (size_t i = offsets[f]; i < offsets[f + 1]; i++)
     {
       aqr_index a = connectivity[i], b = connectivity[i + 1 < offsets[f + 1] ? i + 1 : offsets[f]];
       sides[i - offsets[0]] =
         (side){ a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a, (aqr_index)(i - offsets[0]) };
     }
+  }
   AQR_TRY(aqr_sort(c, sides, n, sizeof *sides, by_key));
   AQR_REQUIRE(pair_sides(sides, n, from, base, half_edge, &edges), AQR_INTERNAL);
   AQR_REQUIRE(AQR_RESERVE(c, m->vertices, m->vertex_capacity, m->n_vertices + n_vertices) &&
