@@ -11,7 +11,7 @@ enum
 };
 
 static const double most_angle = 4.71238898038469; /* around a peak */
-static const double likely_cosine = 0.87; /* of a face's normal to the peak's: of a cone of 300 degrees .83 */
+static const double likely_cosine = 0.87;          /* of a face's normal to the peak's: of a cone of 270 degrees .75 */
 static const double least_height = 0.3; /* of a peak over its face, in mean distances of the corners from the centre */
 static const double within_reach = 0.5; /* in the same: a vertex as near is moved to the peak */
 

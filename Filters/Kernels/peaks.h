@@ -6,7 +6,7 @@
 #include "polygon_mesh.h"
 #include "surface.h"
 
-/* Inner points of the surface whose angles add up to less than 300 degrees become corners of the mesh where they stand
+/* Inner points of the surface whose angles add up to less than 270 degrees become corners of the mesh where they stand
  * out of it: the nearest vertex moves there or, where none is near, the face below becomes triangles around one.
  * normals: 3 per point of s. The mesh stays as regular as it is. */
 aqr_status aqr_peaks_raise(aqr_context* c, const aqr_surface* s, const double* normals, aqr_polygon_mesh* m);
