@@ -287,32 +287,20 @@ done:
   return status;
 }
 
-/* Whether a face has more corners than can be cut otherwise and may stay, or two at one vertex (or may have). */
 static bool is_to_cut(const aqr_polygon_mesh* m, aqr_index f, const void* options)
 {
-  const size_t* largest = options;
-  size_t n = 0;
-  aqr_index first = m->faces[f], h = first;
-  if (first == AQR_NONE)
-    return false;
-  do
-  {
-    for (aqr_index g = first; g != h; g = aqr_pm_next(m, g))
-      if (aqr_pm_from(m, g) == aqr_pm_from(m, h))
-        return true;
-    h = aqr_pm_next(m, h);
-    n++;
-  } while (h != first && n <= *largest && n < most_compared);
-  return h != first;
+  const size_t* most = options;
+  return m->faces[f] != AQR_NONE && aqr_pm_may_meet_itself(m, f, *most);
 }
 
 aqr_status aqr_cut_large_faces(aqr_context* c, aqr_polygon_mesh* m, int largest_valence, double at)
 {
   aqr_status status = AQR_OK;
-  size_t n = m->n_faces,
-         largest = largest_valence > AQR_POLYGON_CORNERS ? (size_t)largest_valence : AQR_POLYGON_CORNERS;
+  const size_t n = m->n_faces;
+  const size_t largest = largest_valence < AQR_POLYGON_CORNERS ? AQR_POLYGON_CORNERS : (size_t)largest_valence;
+  const size_t most = largest < most_compared ? largest : most_compared;
   aqr_marks marks = { 0 };
-  AQR_TRY(aqr_mark(c, m, n, is_to_cut, &largest, &marks));
+  AQR_TRY(aqr_mark(c, m, n, is_to_cut, &most, &marks));
   for (aqr_index f = 0; f < n; f++)
     if (aqr_is_marked(&marks, f))
       AQR_TRY(cut(c, m, f, at));

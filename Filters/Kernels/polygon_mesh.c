@@ -57,6 +57,21 @@ aqr_index aqr_pm_find(const aqr_polygon_mesh* m, aqr_index u, aqr_index v)
   return AQR_NONE;
 }
 
+bool aqr_pm_may_meet_itself(const aqr_polygon_mesh* m, aqr_index f, size_t most)
+{
+  aqr_index first = m->faces[f], h = first;
+  size_t n = 0;
+  do
+  {
+    for (aqr_index g = first; g != h; g = aqr_pm_next(m, g))
+      if (aqr_pm_from(m, g) == aqr_pm_from(m, h))
+        return true;
+    h = aqr_pm_next(m, h);
+    n++;
+  } while (h != first && n < most);
+  return h != first;
+}
+
 bool aqr_pm_face_has(const aqr_polygon_mesh* m, aqr_index f, aqr_index v)
 {
   aqr_index h = m->faces[f];

@@ -117,6 +117,8 @@ size_t aqr_pm_face_size(const aqr_polygon_mesh* m, aqr_index f);
 vec3 aqr_pm_area(const aqr_polygon_mesh* m, aqr_index f);
 /* The half-edge from u to v, AQR_NONE where there is none. */
 aqr_index aqr_pm_find(const aqr_polygon_mesh* m, aqr_index u, aqr_index v);
+/* Whether a face has a vertex twice, or more corners than `most`, which are not all compared then. */
+bool aqr_pm_may_meet_itself(const aqr_polygon_mesh* m, aqr_index f, size_t most);
 /* Whether v is a corner of face f. */
 bool aqr_pm_face_has(const aqr_polygon_mesh* m, aqr_index f, aqr_index v);
 /* Whether faces f and g have the same set of vertices. */

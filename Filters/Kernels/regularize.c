@@ -335,24 +335,11 @@ static aqr_status keep_rest(aqr_context* c, const aqr_polygon_mesh* m, walker* w
   return AQR_OK;
 }
 
-/* Whether a face has a vertex twice, or too many to compare them. Splitting one leaves the corners of others as they
- * are. */
+/* Splitting one face leaves the corners of others as they are. */
 static bool may_have_repeats(const aqr_polygon_mesh* m, aqr_index f, const void* options)
 {
   (void)options;
-  aqr_index first = m->faces[f], h = first;
-  size_t n = 0;
-  if (first == AQR_NONE)
-    return false;
-  do
-  {
-    for (aqr_index g = first; g != h; g = aqr_pm_next(m, g))
-      if (aqr_pm_from(m, g) == aqr_pm_from(m, h))
-        return true;
-    h = aqr_pm_next(m, h);
-    n++;
-  } while (h != first && n < most_compared);
-  return h != first;
+  return m->faces[f] != AQR_NONE && aqr_pm_may_meet_itself(m, f, most_compared);
 }
 
 /* Each split lowers the sum over all faces of (corners - different vertices) by at least one, because the two corners

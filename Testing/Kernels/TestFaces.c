@@ -5,6 +5,7 @@
 #include "faces.h"
 #include "partition.h"
 #include "regularize.h"
+#include "shapes.h"
 
 static const aqr_faces_options usual = { .convex_partition = true, .largest_valence = 5 };
 
@@ -30,6 +31,43 @@ AQR_TEST(any_cell_decomposition_ends_as_a_valid_mesh_of_the_same_topology)
     CHECK(aqr_pm_euler(&m) == (open ? 1 : 0));
     aqr_polygon_mesh_free(&c, &m);
     CHECK(c.bytes == 0);
+  }
+}
+
+/* One polygon of n corners around a circle, with a wall behind each side. */
+AQR_TEST(a_polygon_of_some_number_of_corners_is_left_whole)
+{
+  for (size_t n = 3; n <= 70; n++)
+  {
+    aqr_context c = { 0 };
+    aqr_polygon_mesh m = { 0 };
+    aqr_vertex* v = malloc(2 * n * sizeof *v);
+    size_t* offsets = malloc((n + 2) * sizeof *offsets);
+    aqr_index* corner = malloc(5 * n * sizeof *corner);
+    for (size_t i = 0; i < 2 * n; i++)
+    {
+      double a = shape_turn * (double)(i % n) / (double)n, r = i < n ? 1 : 1.1;
+      v[i] = (aqr_vertex){ .position = v3(r * cos(a), r * sin(a), 0), .normal = v3(0, 0, 1), .size = 0.01 };
+      v[i].out = AQR_NONE;
+    }
+    offsets[0] = 0;
+    offsets[1] = n;
+    for (size_t i = 0; i < n; i++)
+    {
+      const size_t next = (i + 1) % n, wall[4] = { i, n + i, n + next, next };
+      corner[i] = (aqr_index)i;
+      offsets[i + 2] = offsets[i + 1] + 4;
+      for (size_t k = 0; k < 4; k++)
+        corner[n + 4 * i + k] = (aqr_index)wall[k];
+    }
+    CHECK(aqr_pm_append(&c, &m, v, 2 * n, offsets, n + 1, corner) == AQR_OK);
+    CHECK(aqr_faces_finish(&c, &m, &usual) == AQR_OK);
+    for (aqr_index f = 0; f < m.n_faces; f++)
+      CHECK(m.faces[f] == AQR_NONE || aqr_pm_face_size(&m, f) <= 5);
+    aqr_polygon_mesh_free(&c, &m);
+    free(v);
+    free(offsets);
+    free(corner);
   }
 }
 

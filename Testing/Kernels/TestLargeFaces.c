@@ -10,8 +10,9 @@ static shape perforated(size_t n, size_t sides, double radius)
   size_t w = n + 1, quarter = sides / 4;
   m.points = malloc(3 * (w * w + n * n * sides) * sizeof *m.points);
   m.triangles = malloc(3 * n * n * (sides + 4) * sizeof *m.triangles);
-  for (size_t i = 0; i < w * w; i++)
-    v3_store(m.points + 3 * m.n_points++, v3((double)(i % w), (double)(i / w), 0));
+  for (size_t y = 0; y < w; y++)
+    for (size_t x = 0; x < w; x++)
+      v3_store(m.points + 3 * m.n_points++, v3((double)x, (double)y, 0));
   for (size_t tile = 0; tile < n * n; tile++)
   {
     size_t x = tile % n, y = tile / n, first = m.n_points;
