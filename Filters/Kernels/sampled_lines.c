@@ -5,6 +5,7 @@
 
 enum
 {
+  most_of_speck = 12, /* faces */
   most_on_edge = 8,   /* spacings along an edge of a chain, however small the tolerance */
   most_failures = 50, /* growths that come to nothing, per line kept ... */
   free_failures = 64, /* ... and these many lines more: the bound of the work along threads without area */
@@ -359,6 +360,29 @@ static bool gives_up(const aqr_sampler* m)
          m->in_vain > most_in_vain * (kept + m->s->n_faces);
 }
 
+/* Whether f belongs to a closed surface of no more faces than a cube's, without creases. Long edges have been halved:
+ * it is small, and lines around it would have more crossings than it has points, and miss its shape. */
+static bool is_on_speck(const aqr_surface* s, aqr_index f)
+{
+  aqr_index faces[most_of_speck] = { f };
+  unsigned n = 1;
+  for (unsigned i = 0; i < n; i++)
+    for (unsigned k = 0; k < 3; k++)
+    {
+      aqr_index t = aqr_twin(s, 3 * faces[i] + k);
+      unsigned at = 0;
+      if (t == AQR_NONE)
+        return false;
+      while (at < n && faces[at] != aqr_face_of(t))
+        at++;
+      if (at == most_of_speck)
+        return false;
+      if (at == n)
+        faces[n++] = aqr_face_of(t);
+    }
+  return true;
+}
+
 /* A seed inside face f, for a line along `d`, at least `distance` from its family. */
 aqr_status aqr_seed_inside(aqr_sampler* m, aqr_index f, vec3 p, vec3 d, double distance)
 {
@@ -367,7 +391,7 @@ aqr_status aqr_seed_inside(aqr_sampler* m, aqr_index f, vec3 p, vec3 d, double d
   if (aqr_is_full(m) || gives_up(m))
     return AQR_OK;
   aqr_status status = aqr_grow_allowed(m->c, &m->grower, f, p, d, distance, &allowed);
-  if (status != AQR_OK || !allowed)
+  if (status != AQR_OK || !allowed || is_on_speck(m->s, f))
     return status;
   aqr_place at = aqr_place_in(m->s, f, p, 1e-6);
   status = aqr_grow_inside(m->c, &m->grower, &at, d);

@@ -211,4 +211,38 @@ AQR_TEST(places_along_a_needle_are_all_its_middle)
   aqr_remesher_free(r);
 }
 
+/* Lines around tetrahedra far smaller than the spacing made three points of each and two thirds of its surface. */
+AQR_TEST(lines_are_drawn_around_specks)
+{
+  enum
+  {
+    specks = 200
+  };
+  static double points[12 * specks];
+  static int64_t triangles[12 * specks];
+  const int64_t faces[12] = { 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2 };
+  unsigned state = 1;
+  for (size_t i = 0; i < specks; i++)
+  {
+    double* p = points + 12 * i;
+    for (size_t k = 0; k < 12; k++)
+      p[k] = 50 * shape_random(&state);
+    for (size_t k = 3; k < 12; k++)
+      p[k] = p[k % 3] + (k % 4 == 3 ? 0.5 : 0);
+    for (size_t k = 0; k < 12; k++)
+      triangles[12 * i + k] = (int64_t)(4 * i) + faces[k];
+  }
+  aqr_input input = {
+    .number_of_points = 4 * specks, .points_d = points, .number_of_triangles = 4 * specks, .triangles = triangles
+  };
+  aqr_options o = aqr_default_options();
+  aqr_remesher* r = NULL;
+  CHECK(!fault_of(&input, &o));
+  CHECK(aqr_remesher_new(NULL, &r) == AQR_OK && aqr_remesher_set_input(r, &input) == AQR_OK);
+  CHECK(aqr_remesher_run(r, &o) == AQR_OK);
+  CHECK(aqr_remesher_mesh(r)->number_of_points == 4 * specks);
+  CHECK(aqr_remesher_mesh(r)->number_of_faces == 4 * specks);
+  aqr_remesher_free(r);
+}
+
 AQR_TEST_MAIN
