@@ -2,6 +2,8 @@
 /* A forest of shortest ways to the network, and arcs over the pieces of borders where its trees meet. */
 #include "arcs.h"
 
+#include "sort.h"
+
 #include <stdlib.h>
 
 typedef struct drawing
@@ -62,6 +64,7 @@ typedef struct link
 {
   aqr_index piece;
   uint32_t length;
+  aqr_index hub[2]; /* the vertices it hangs at, by rank among those that any does */
 } link;
 
 static int by_length(const void* a, const void* b)
@@ -92,7 +95,7 @@ static aqr_status gather_links(aqr_context* c, const aqr_region_cells* g, link**
     }
     if (!AQR_RESERVE(c, *links, *capacity, *n + 1))
       return AQR_OUT_OF_MEMORY;
-    (*links)[(*n)++] = (link){ i, length };
+    (*links)[(*n)++] = (link){ i, length, { AQR_NONE, AQR_NONE } };
   }
   return AQR_OK;
 }
@@ -104,12 +107,47 @@ typedef struct hub
   uint32_t degree, links;
 } hub;
 
-static void hang(const aqr_region_cells* g, hub* hubs, const link* links, uint32_t i, bool off)
+static int by_index(const void* a, const void* b)
 {
-  const aqr_piece* p = &g->pieces[links[i].piece];
+  const aqr_index *x = a, *y = b;
+  return (*x > *y) - (*x < *y);
+}
+
+/* Ranks the vertices at the ends of links: of all there are it is a few that links hang at. */
+static aqr_status rank_hubs(aqr_context* c, const aqr_region_cells* g, link* links, size_t n, size_t* n_hubs)
+{
+  size_t used = 0;
+  aqr_status status = AQR_OK;
+  aqr_index* vertex = AQR_NEW(c, aqr_index, 2 * n);
+  AQR_REQUIRE(vertex, AQR_OUT_OF_MEMORY);
+  for (size_t i = 0; i < n; i++)
+  {
+    vertex[2 * i] = g->pieces[links[i].piece].from;
+    vertex[2 * i + 1] = g->pieces[links[i].piece].to;
+  }
+  AQR_TRY(aqr_sort(c, vertex, 2 * n, sizeof *vertex, by_index));
+  for (size_t i = 0; i < 2 * n; i++)
+    if (used == 0 || vertex[used - 1] != vertex[i])
+      vertex[used++] = vertex[i];
+  for (size_t i = 0; i < n; i++)
+    for (unsigned k = 0; k < 2; k++)
+    {
+      const aqr_piece* p = &g->pieces[links[i].piece];
+      const aqr_index* at = bsearch(k ? &p->to : &p->from, vertex, used, sizeof *vertex, by_index);
+      AQR_REQUIRE(at, AQR_INTERNAL);
+      links[i].hub[k] = (aqr_index)(at - vertex);
+    }
+  *n_hubs = used;
+done:
+  AQR_DROP(c, vertex, 2 * n);
+  return status;
+}
+
+static void hang(hub* hubs, const link* links, uint32_t i, bool off)
+{
   for (unsigned k = 0; k < 2; k++)
   {
-    hub* at = &hubs[k ? p->to : p->from];
+    hub* at = &hubs[links[i].hub[k]];
     at->degree += off ? UINT32_MAX : 1;
     at->links ^= i;
   }
@@ -117,16 +155,15 @@ static void hang(const aqr_region_cells* g, hub* hubs, const link* links, uint32
 
 /* Takes away the link that hangs alone at a vertex, and what then hangs alone at its other end, and so on: an arc over
  * one of those would cut off a disk. */
-static void strip(const aqr_region_cells* g, hub* hubs, const link* links, uint8_t* gone, aqr_index vertex)
+static void strip(hub* hubs, const link* links, uint8_t* gone, aqr_index at)
 {
-  while (hubs[vertex].degree == 1)
+  while (hubs[at].degree == 1)
   {
-    uint32_t i = hubs[vertex].links;
-    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): where a vertex has a degree there are links */
-    const aqr_piece* p = &g->pieces[links[i].piece];
+    uint32_t i = hubs[at].links;
     gone[i] = 1;
-    hang(g, hubs, links, i, true);
-    vertex = p->from == vertex ? p->to : p->from;
+    hang(hubs, links, i, true);
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): where a vertex has a degree there are links */
+    at = links[i].hub[links[i].hub[0] == at];
   }
 }
 
@@ -255,27 +292,24 @@ aqr_status aqr_arcs_draw(aqr_context* c, aqr_region_cells* g, aqr_lines* lines, 
 {
   drawing d = { .c = c, .g = g };
   link* links = NULL;
-  size_t n = 0, capacity = 0, n_hubs = g->s->n_points + 2 * lines->n_samples;
-  hub* hubs = NULL; /* the few that links hang at are set */
+  size_t n = 0, capacity = 0, n_hubs = 0;
+  hub* hubs = NULL;
   uint8_t *gone = NULL, *taken = NULL;
   aqr_status status = AQR_OK;
   AQR_TRY(search(&d));
-  hubs = AQR_NEW(c, hub, n_hubs);
-  taken = AQR_NEW0(c, uint8_t, g->n_cells);
-  AQR_REQUIRE(hubs && taken, AQR_OUT_OF_MEMORY);
   AQR_TRY(gather_links(c, g, &links, &n, &capacity));
+  AQR_TRY(aqr_sort(c, links, n, sizeof *links, by_length));
+  AQR_TRY(rank_hubs(c, g, links, n, &n_hubs));
+  hubs = AQR_NEW0(c, hub, n_hubs);
+  taken = AQR_NEW0(c, uint8_t, g->n_cells);
   gone = AQR_NEW0(c, uint8_t, n);
-  AQR_REQUIRE(gone, AQR_OUT_OF_MEMORY);
-  if (n)
-    qsort(links, n, sizeof *links, by_length);
+  AQR_REQUIRE(hubs && taken && gone, AQR_OUT_OF_MEMORY);
   for (uint32_t i = 0; i < n; i++)
-    hubs[g->pieces[links[i].piece].from] = hubs[g->pieces[links[i].piece].to] = (hub){ 0, 0 };
-  for (uint32_t i = 0; i < n; i++)
-    hang(g, hubs, links, i, false);
+    hang(hubs, links, i, false);
   for (uint32_t i = 0; i < n; i++)
   {
-    strip(g, hubs, links, gone, g->pieces[links[i].piece].from);
-    strip(g, hubs, links, gone, g->pieces[links[i].piece].to);
+    strip(hubs, links, gone, links[i].hub[0]);
+    strip(hubs, links, gone, links[i].hub[1]);
   }
   for (uint32_t i = 0; i < n; i++)
   {
@@ -290,9 +324,9 @@ aqr_status aqr_arcs_draw(aqr_context* c, aqr_region_cells* g, aqr_lines* lines, 
       is_taken(g, &links[i], taken, true);
     }
     gone[i] = 1;
-    hang(g, hubs, links, i, true);
-    strip(g, hubs, links, gone, g->pieces[links[i].piece].from);
-    strip(g, hubs, links, gone, g->pieces[links[i].piece].to);
+    hang(hubs, links, i, true);
+    strip(hubs, links, gone, links[i].hub[0]);
+    strip(hubs, links, gone, links[i].hub[1]);
   }
   /* not before all are drawn, so that the layouts stay those of the network */
   for (size_t i = 0; i < d.n_arcs; i++)
