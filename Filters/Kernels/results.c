@@ -22,16 +22,16 @@ static aqr_origin origin_of(const aqr_surface* s, const aqr_place* at)
   unsigned n = 0;
   for (unsigned k = 0; k < 3; k++)
   {
-    const aqr_origin* o = &s->origin[s->clean[s->corner[3 * at->face + k]]];
+    const aqr_origin o = aqr_origin_of(s, s->clean[s->corner[3 * at->face + k]]);
     for (unsigned i = 0; i < 3; i++)
     {
-      double w = at->bary[k] * (double)o->weight[i];
+      double w = at->bary[k] * (double)o.weight[i];
       unsigned j = 0;
-      while (j < n && point[j] != o->point[i])
+      while (j < n && point[j] != o.point[i])
         j++;
       if (j == n)
       {
-        point[n] = o->point[i];
+        point[n] = o.point[i];
         weight[n++] = 0;
       }
       weight[j] += w;
@@ -273,7 +273,7 @@ static void show_points(void* data, size_t begin, size_t end)
     j->min_curvature[i] = (double)j->field->k_min[v] / s->diagonal;
     j->max_curvature[i] = (double)j->field->k_max[v] / s->diagonal;
     j->point_confidence[i] = j->field->point_confidence[v];
-    j->origins[i] = s->origin[v];
+    j->origins[i] = aqr_origin_of(s, v);
   }
 }
 

@@ -125,10 +125,10 @@ static void ask(void* data, size_t begin, size_t end)
   job* j = data;
   for (size_t v = begin; v < end; v++)
   {
-    const aqr_origin* o = &j->s->origin[j->s->clean[v]];
+    const aqr_origin o = aqr_origin_of(j->s, j->s->clean[v]);
     double d = 0;
     for (int i = 0; i < 3; i++)
-      d += (double)o->weight[i] * j->options->density[o->point[i]];
+      d += (double)o.weight[i] * j->options->density[o.point[i]];
     j->sizing->scale[v] = (float)fmin(strongest, fmax(1 / strongest, 1 / sqrt(d)));
   }
 }

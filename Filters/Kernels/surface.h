@@ -11,24 +11,27 @@
 #include "context.h"
 #include "vector.h"
 
-#define AQR_SEAM 0x80000000u /* set in `twin` where the edge is a seam */
+#define AQR_SEAM 0x80000000u    /* set in `twin` where the edge is a seam */
+#define AQR_BETWEEN 0x80000000u /* set in `origin` where the point is none of the input's */
 
 typedef struct aqr_surface
 {
   size_t n_points, n_faces;
-  size_t n_clean;     /* cleaned points: those there were before creases cut sectors off */
-  double* points;     /* 3 * n_points; bounding box diagonal 1, centred at 0 */
-  aqr_index* corner;  /* 3 * n_faces: point at the start of each half-edge */
-  aqr_index* twin;    /* 3 * n_faces: AQR_NONE at a boundary, AQR_SEAM | h over a seam, else h */
-  aqr_index* fan;     /* n_points: an outgoing half-edge, the clockwise-most where the point has a border or
-                         seam, so that following aqr_next_around() from it meets every face around the point */
-  aqr_index* clean;   /* n_points: the cleaned point it is a sector of, < n_clean; several sectors may
-                         share one */
-  aqr_origin* origin; /* n_clean: where the cleaned point lies on the input */
-  aqr_index* source;  /* n_faces: input triangle */
-  uint8_t* locked;    /* 3 * n_faces: 1 where the half-edge is to be a crease whatever its angle; NULL: none. Only the
-                         cleaned surface has it, cuts and copies do not */
-  uint8_t* mirrored;  /* n_clean: 1 for points on the plane over which this half will be mirrored; NULL: no plane */
+  size_t n_clean;      /* cleaned points: those there were before creases cut sectors off */
+  double* points;      /* 3 * n_points; bounding box diagonal 1, centred at 0 */
+  aqr_index* corner;   /* 3 * n_faces: point at the start of each half-edge */
+  aqr_index* twin;     /* 3 * n_faces: AQR_NONE at a boundary, AQR_SEAM | h over a seam, else h */
+  aqr_index* fan;      /* n_points: an outgoing half-edge, the clockwise-most where the point has a border or
+                          seam, so that following aqr_next_around() from it meets every face around the point */
+  aqr_index* clean;    /* n_points: the cleaned point it is a sector of, < n_clean; several sectors may
+                          share one */
+  aqr_index* origin;   /* n_clean: the input point that the cleaned point is, or AQR_BETWEEN | one of `between` */
+  aqr_origin* between; /* where cleaned points lie that are none of the input's */
+  size_t n_between, between_capacity;
+  aqr_index* source; /* n_faces: input triangle */
+  uint8_t* locked;   /* 3 * n_faces: 1 where the half-edge is to be a crease whatever its angle; NULL: none. Only the
+                        cleaned surface has it, cuts and copies do not */
+  uint8_t* mirrored; /* n_clean: 1 for points on the plane over which this half will be mirrored; NULL: no plane */
   size_t mirrored_loops;                        /* borders of this half that lie wholly on that plane */
   size_t faces_held, points_held, origins_held; /* what the arrays per face, per point, and `origin` have room for */
   vec3 centre;                                  /* input = centre + diagonal * point */
@@ -158,7 +161,19 @@ bool aqr_surface_reserve_faces(aqr_context* c, aqr_surface* s, size_t need);
 bool aqr_surface_reserve_points(aqr_context* c, aqr_surface* s, size_t need);
 bool aqr_surface_reserve_origins(aqr_context* c, aqr_surface* s, size_t need);
 
-/* The place at fraction t between two places on one input triangle. */
-aqr_origin aqr_origin_between(const aqr_origin* a, const aqr_origin* b, double t, aqr_index triangle);
+/* Whether cleaned point v is a point of the input. */
+static inline bool aqr_is_input_point(const aqr_surface* s, size_t v)
+{
+  return !(s->origin[v] & AQR_BETWEEN);
+}
+
+/* Where cleaned point v lies on the input. */
+aqr_origin aqr_origin_of(const aqr_surface* s, size_t v);
+
+/* The place at fraction t between two cleaned points of one input triangle. */
+aqr_origin aqr_origin_between(const aqr_surface* s, aqr_index a, aqr_index b, double t, aqr_index triangle);
+
+/* Gives cleaned point v, for which there is room, an origin that is no input point; false when out of memory. */
+bool aqr_surface_put_between(aqr_context* c, aqr_surface* s, size_t v, const aqr_origin* origin);
 
 #endif

@@ -43,12 +43,12 @@ static bool joined(const aqr_input* in, const aqr_index* weld, size_t i, pair* p
 /* The input edge that the half-edge is a piece of: points added by halving it have origins at its two ends. */
 static bool piece_of(const aqr_surface* s, aqr_index h, pair* p)
 {
-  const aqr_origin* ends[2] = { &s->origin[aqr_from(s, h)], &s->origin[aqr_to(s, h)] };
+  const aqr_origin ends[2] = { aqr_origin_of(s, aqr_from(s, h)), aqr_origin_of(s, aqr_to(s, h)) };
   aqr_index seen[2] = { AQR_NONE, AQR_NONE };
   unsigned n = 0;
   for (unsigned k = 0; k < 6; k++)
   {
-    const aqr_origin* o = ends[k / 3];
+    const aqr_origin* o = &ends[k / 3];
     aqr_index v = o->point[k % 3];
     if (!(o->weight[k % 3] > 0) || (n > 0 && seen[0] == v) || (n > 1 && seen[1] == v))
       continue;

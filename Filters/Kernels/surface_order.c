@@ -50,7 +50,6 @@ typedef struct arrangement
   keyed *order, *spare;
   aqr_index* input_point; /* of each point in order */
   aqr_index* first;       /* of its half-edges */
-  aqr_index* last;        /* of its input triangles */
 } arrangement;
 
 static vec3 place(const arrangement* a, size_t input_point)
@@ -90,16 +89,13 @@ static aqr_status number_points(aqr_context* c, arrangement* a)
   {
     if (i % (1 << 18) == 0)
       AQR_REQUIRE(aqr_step(c, 0.35), AQR_CANCELLED);
-    aqr_index v = a->to.corner[i], triangle = a->to.source[i / 3];
+    aqr_index v = a->to.corner[i];
     if (id[v] == AQR_NONE)
     {
       id[v] = (aqr_index)n;
       a->input_point[n] = v;
-      a->first[n] = (aqr_index)i;
-      a->last[n++] = triangle;
+      a->first[n++] = (aqr_index)i;
     }
-    aqr_index* last = &a->last[id[v]];
-    *last = *last < triangle ? triangle : *last;
     a->to.corner[i] = id[v];
   }
   a->to.n_points = n;
@@ -116,7 +112,7 @@ static void place_points(void* data, size_t begin, size_t end)
     aqr_index p = a->input_point[i];
     v3_store(a->to.points + 3 * i, place(a, p));
     a->to.fan[i] = a->first[i];
-    a->to.origin[i] = (aqr_origin){ { p, p, p }, { 1, 0, 0 }, a->last[i] };
+    a->to.origin[i] = p;
   }
 }
 
@@ -139,8 +135,7 @@ aqr_status aqr_surface_arrange(aqr_context* c, const aqr_input* input, aqr_surfa
   AQR_DROP(c, a.order, n);
   a.input_point = AQR_NEW(c, aqr_index, n_in);
   a.first = AQR_NEW(c, aqr_index, n_in);
-  a.last = AQR_NEW(c, aqr_index, n_in);
-  AQR_REQUIRE(a.input_point && a.first && a.last, AQR_OUT_OF_MEMORY);
+  AQR_REQUIRE(a.input_point && a.first, AQR_OUT_OF_MEMORY);
   AQR_TRY(number_points(c, &a));
   AQR_REQUIRE(
     aqr_surface_reserve_points(c, &a.to, a.to.n_points) && aqr_surface_reserve_origins(c, &a.to, a.to.n_points),
@@ -154,7 +149,6 @@ done:
   AQR_DROP(c, a.spare, n);
   AQR_DROP(c, a.input_point, n_in);
   AQR_DROP(c, a.first, n_in);
-  AQR_DROP(c, a.last, n_in);
   aqr_surface_free(c, &a.to);
   return status;
 }
@@ -189,7 +183,7 @@ aqr_status aqr_surface_rank_points(aqr_context* c, const aqr_surface* s, size_t 
   if (!key)
     return AQR_OUT_OF_MEMORY;
   for (size_t i = 0; i < s->n_clean; i++)
-    key[i] = s->origin[i].weight[0] < 1 ? (aqr_index)n_input_points : s->origin[i].point[0];
+    key[i] = aqr_is_input_point(s, i) ? s->origin[i] : (aqr_index)n_input_points;
   aqr_status status = rank_by(c, key, s->n_clean, n_input_points + 1, rank);
   AQR_DROP(c, key, s->n_clean);
   return status;

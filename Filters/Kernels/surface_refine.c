@@ -66,7 +66,9 @@ static bool split_edge(refiner* r, aqr_index h)
     return false;
   aqr_index a = aqr_from(s, h), b = aqr_to(s, h);
   v3_store(s->points + 3 * (size_t)m, v3_scale(v3_add(aqr_point(s, a), aqr_point(s, b)), 0.5));
-  s->origin[m] = aqr_origin_between(&s->origin[a], &s->origin[b], 0.5, s->source[h / 3]);
+  const aqr_origin middle = aqr_origin_between(s, a, b, 0.5, s->source[h / 3]);
+  if (!aqr_surface_put_between(r->c, s, m, &middle))
+    return false;
   s->n_points++;
   s->n_faces += t == AQR_NONE ? 1 : 2;
   split_face(s, h, m, g);

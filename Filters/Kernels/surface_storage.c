@@ -63,13 +63,32 @@ bool aqr_surface_reserve_origins(aqr_context* c, aqr_surface* s, size_t need)
   return grow(c, m, 1, &s->origins_held, need);
 }
 
-aqr_origin aqr_origin_between(const aqr_origin* a, const aqr_origin* b, double t, aqr_index triangle)
+aqr_origin aqr_origin_of(const aqr_surface* s, size_t v)
 {
-  aqr_origin r = { { a->point[0], a->point[0], a->point[0] }, { 0, 0, 0 }, triangle };
+  aqr_index p = s->origin[v];
+  if (p & AQR_BETWEEN)
+    return s->between[p & ~AQR_BETWEEN];
+  return (aqr_origin){ { p, p, p }, { 1, 0, 0 }, s->source[aqr_face_of(s->fan[v])] };
+}
+
+bool aqr_surface_put_between(aqr_context* c, aqr_surface* s, size_t v, const aqr_origin* origin)
+{
+  if (!AQR_RESERVE(c, s->between, s->between_capacity, s->n_between + 1))
+    return false;
+  s->origin[v] = AQR_BETWEEN | (aqr_index)s->n_between;
+  s->between[s->n_between++] = *origin;
+  return true;
+}
+
+aqr_origin aqr_origin_between(const aqr_surface* s, aqr_index a, aqr_index b, double t, aqr_index triangle)
+{
+  const aqr_origin ends[2] = { aqr_origin_of(s, a), aqr_origin_of(s, b) };
+  aqr_index first = ends[0].point[0];
+  aqr_origin r = { { first, first, first }, { 0, 0, 0 }, triangle };
   unsigned n = 0;
   for (unsigned k = 0; k < 6; k++)
   {
-    const aqr_origin* o = k < 3 ? a : b;
+    const aqr_origin* o = &ends[k / 3];
     double share = (k < 3 ? 1 - t : t) * (double)o->weight[k % 3];
     unsigned j = 0;
     while (j < n && r.point[j] != o->point[k % 3])
@@ -94,6 +113,7 @@ void aqr_surface_free(aqr_context* c, aqr_surface* s)
   AQR_DROP(c, s->fan, s->points_held);
   AQR_DROP(c, s->clean, s->points_held);
   AQR_DROP(c, s->origin, s->origins_held);
+  AQR_DROP(c, s->between, s->between_capacity);
   memset(s, 0, sizeof *s);
 }
 
@@ -102,6 +122,7 @@ aqr_status aqr_surface_copy(aqr_context* c, const aqr_surface* from, aqr_surface
   memset(to, 0, sizeof *to);
   if (!aqr_surface_reserve_faces(c, to, from->n_faces) || !aqr_surface_reserve_points(c, to, from->n_points) ||
       !aqr_surface_reserve_origins(c, to, from->n_clean) ||
+      !AQR_RESERVE(c, to->between, to->between_capacity, from->n_between) ||
       (from->mirrored && !(to->mirrored = AQR_NEW(c, uint8_t, from->n_clean))))
   {
     to->n_clean = from->n_clean;
@@ -115,11 +136,14 @@ aqr_status aqr_surface_copy(aqr_context* c, const aqr_surface* from, aqr_surface
   memcpy(to->fan, from->fan, from->n_points * sizeof *to->fan);
   memcpy(to->clean, from->clean, from->n_points * sizeof *to->clean);
   memcpy(to->origin, from->origin, from->n_clean * sizeof *to->origin);
+  if (from->n_between)
+    memcpy(to->between, from->between, from->n_between * sizeof *to->between);
   if (from->mirrored)
     memcpy(to->mirrored, from->mirrored, from->n_clean);
   to->n_faces = from->n_faces;
   to->n_points = from->n_points;
   to->n_clean = from->n_clean;
+  to->n_between = from->n_between;
   to->centre = from->centre;
   to->diagonal = from->diagonal;
   return AQR_OK;

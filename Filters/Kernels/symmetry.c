@@ -43,13 +43,17 @@ static void find_sides(cutter* w)
   }
 }
 
-static bool add_point(cutter* w, vec3 p, aqr_origin origin)
+/* A point at p that is input point `input`, or lies at `between` where that is not NULL. */
+static bool add_point(cutter* w, vec3 p, aqr_index input, const aqr_origin* between)
 {
   aqr_surface* t = w->half;
   if (!aqr_surface_reserve_points(w->c, t, t->n_points + 1) || !aqr_surface_reserve_origins(w->c, t, t->n_points + 1))
     return false;
-  v3_store(t->points + 3 * t->n_points, p);
-  t->origin[t->n_points++] = origin;
+  if (between && !aqr_surface_put_between(w->c, t, t->n_points, between))
+    return false;
+  if (!between)
+    t->origin[t->n_points] = input;
+  v3_store(t->points + 3 * t->n_points++, p);
   return true;
 }
 
@@ -64,7 +68,9 @@ static aqr_index kept(cutter* w, aqr_index v)
   if (w->id[v] != AQR_NONE)
     return w->id[v];
   vec3 p = aqr_point(w->s, v);
-  if (!add_point(w, w->side[v] ? p : onto_plane(w->plane, p), w->s->origin[v]))
+  const aqr_origin origin = aqr_origin_of(w->s, v);
+  if (!add_point(
+        w, w->side[v] ? p : onto_plane(w->plane, p), w->s->origin[v], aqr_is_input_point(w->s, v) ? NULL : &origin))
     return AQR_NONE;
   return w->id[v] = (aqr_index)(w->half->n_points - 1);
 }
@@ -79,7 +85,8 @@ static aqr_index cut_at(cutter* w, aqr_index h)
   aqr_index a = aqr_from(s, low), b = aqr_to(s, low);
   double at = w->height[a] / (w->height[a] - w->height[b]);
   vec3 p = v3_madd(v3_scale(aqr_point(s, a), 1 - at), at, aqr_point(s, b));
-  if (!add_point(w, onto_plane(w->plane, p), aqr_origin_between(&s->origin[a], &s->origin[b], at, s->source[low / 3])))
+  const aqr_origin origin = aqr_origin_between(s, a, b, at, s->source[low / 3]);
+  if (!add_point(w, onto_plane(w->plane, p), AQR_NONE, &origin))
     return AQR_NONE;
   return w->cut[low] = (aqr_index)(w->half->n_points - 1);
 }
@@ -297,7 +304,7 @@ aqr_status aqr_symmetry_unmatched(aqr_context* c, const aqr_surface* s, const aq
   {
     if (v % 65536 == 0)
       AQR_REQUIRE(aqr_step(c, 0.95), AQR_CANCELLED);
-    if (s->origin[v].weight[0] < 1) /* in the middle of a long edge: as symmetric as its ends, but for diagonals */
+    if (!aqr_is_input_point(s, v)) /* in the middle of a long edge: as symmetric as its ends, but for diagonals */
       continue;
     vec3 p = aqr_point(s, v);
     *count += !has_point_near(s, &g, v3_madd(p, -2 * aqr_plane_height(plane, p), plane->normal));

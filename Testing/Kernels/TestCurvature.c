@@ -213,12 +213,12 @@ AQR_TEST(ball_jumps_to_the_next_sheet)
   estimate alone = estimate_of(&one, 0.04), together = estimate_of(&both, 0.04);
   size_t* at = malloc(one.n_points * sizeof *at); /* of the points of `one` among those of both */
   for (size_t i = 0; i < together.s.n_points; i++)
-    if (together.s.origin[i].point[0] < one.n_points)
-      at[together.s.origin[i].point[0]] = i;
+    if (together.s.origin[i] < one.n_points)
+      at[together.s.origin[i]] = i;
   bool same_points = true, same_tensors = true;
   for (size_t i = 0; i < one.n_points; i++)
   {
-    size_t j = at[alone.s.origin[i].point[0]];
+    size_t j = at[alone.s.origin[i]];
     same_points &= !memcmp(alone.s.points + 3 * i, together.s.points + 3 * j, 3 * sizeof(double));
     same_tensors &= !memcmp(alone.t.t + 6 * i, together.t.t + 6 * j, 6 * sizeof(float));
   }

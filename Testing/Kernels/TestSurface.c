@@ -40,8 +40,8 @@ AQR_TEST(of_equal_points_the_first_that_a_triangle_uses_stays_on_any_number_of_t
     CHECK(s.n_points == whole && report.merged_points == m.n_points - whole && report.unused_points == 0);
     for (size_t i = 0; i < s.n_points; i += 101)
     {
-      const double* p = m.points + 3 * s.origin[i].point[0];
-      for (size_t k = s.origin[i].point[0] + 1; k < m.n_points; k++)
+      const double* p = m.points + 3 * s.origin[i];
+      for (size_t k = s.origin[i] + 1; k < m.n_points; k++)
         CHECK(memcmp(p, m.points + 3 * k, 3 * sizeof *p) != 0); /* none used before it */
     }
     aqr_surface_free(&c, &s);
