@@ -243,7 +243,7 @@ static void flatten(void* data, size_t begin, size_t end)
       size_t v = s->corner[3 * f + i];
       aqr_complex d = aqr_flatten(v3_load(j->field->normal + 3 * v), aqr_cross(j->field, v), v3_sub(p[k], p[i]),
         v3_sub(p[h], p[i]), cx(q[k].x - q[i].x, q[k].y - q[i].y), cx(q[h].x - q[i].x, q[h].y - q[i].y));
-      j->field->flat[3 * f + i] = cx_narrow(cx_fourth(d));
+      j->field->flat[3 * f + i] = cx_shorten(cx_fourth(d));
     }
   }
 }

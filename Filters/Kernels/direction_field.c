@@ -174,7 +174,7 @@ static bool allocate(aqr_context* c, const aqr_surface* s, aqr_field* field)
   field->k_min = AQR_NEW(c, float, n);
   field->k_max = AQR_NEW(c, float, n);
   field->cross = AQR_NEW(c, float, 3 * n);
-  field->flat = AQR_NEW(c, aqr_rotor, 3 * s->n_faces);
+  field->flat = AQR_NEW(c, aqr_short_rotor, 3 * s->n_faces);
   field->point_confidence = AQR_NEW(c, float, n);
   field->face_confidence = AQR_NEW(c, float, s->n_faces);
   return field->direction && field->k_min && field->k_max && field->cross && field->flat && field->point_confidence &&

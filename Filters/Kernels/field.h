@@ -16,11 +16,11 @@ typedef struct aqr_field
   float* k_min;         /* per point, signed, k_min <= k_max, in units of the scaled surface; positive on a
                            sphere */
   float* k_max;
-  float* cross;    /* 3 per point: one branch of a smooth cross field that equals the principal directions where they
-                      are trusted and extends them elsewhere; branches of neighbouring points agree up to quarter
-                      turns */
-  aqr_rotor* flat; /* 3 per face: fourth powers of the corners' crosses, flattened into the plane of the face whose
-                      half-edge 0 runs along +x (paper 2) */
+  float* cross; /* 3 per point: one branch of a smooth cross field that equals the principal directions where they
+                   are trusted and extends them elsewhere; branches of neighbouring points agree up to quarter
+                   turns */
+  aqr_short_rotor* flat;   /* 3 per face: fourth powers of the corners' crosses, flattened into the plane of the face
+                        whose   half-edge 0 runs along +x (paper 2) */
   float* point_confidence; /* per point, [0,1] */
   float* face_confidence;  /* per face, [0,1], equation 1 of the paper */
 } aqr_field;

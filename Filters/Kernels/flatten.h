@@ -6,6 +6,7 @@
 #include "vector.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 typedef struct aqr_complex
 {
@@ -39,6 +40,22 @@ static inline aqr_rotor cx_narrow(aqr_complex a)
 static inline aqr_complex cx_wide(aqr_rotor a)
 {
   return cx((double)a.x, (double)a.y);
+}
+
+/* For the arrays that lines read most: a unit number to 2e-5, in units of 1/32767. */
+typedef struct aqr_short_rotor
+{
+  int16_t x, y;
+} aqr_short_rotor;
+
+static inline aqr_short_rotor cx_shorten(aqr_complex unit)
+{
+  return (aqr_short_rotor){ (int16_t)lrint(INT16_MAX * unit.x), (int16_t)lrint(INT16_MAX * unit.y) };
+}
+
+static inline bool aqr_agree(aqr_short_rotor a, aqr_short_rotor b)
+{
+  return (int32_t)a.x * b.x + (int32_t)a.y * b.y > 0;
 }
 
 static inline aqr_complex cx_fourth(aqr_complex a)

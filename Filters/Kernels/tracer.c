@@ -53,9 +53,8 @@ static bool is_coherent(const aqr_tracer* t)
 {
   if (!t->flat)
     return false;
-  const aqr_rotor* u = t->flat + 3 * (size_t)t->chart.face;
-  return u[0].x * u[1].x + u[0].y * u[1].y > 0 && u[1].x * u[2].x + u[1].y * u[2].y > 0 &&
-         u[2].x * u[0].x + u[2].y * u[0].y > 0;
+  const aqr_short_rotor* u = t->flat + 3 * (size_t)t->chart.face;
+  return aqr_agree(u[0], u[1]) && aqr_agree(u[1], u[2]) && aqr_agree(u[2], u[0]);
 }
 
 /* Lays face f, whose own layout is q, so that its corner `k` comes to `at` and its +x axis to the unit number `turn`.
@@ -175,7 +174,7 @@ static aqr_complex half_angle(aqr_complex u)
 static aqr_complex nearest_branch(const aqr_tracer* t, aqr_complex d)
 {
   const aqr_chart* chart = &t->chart;
-  const aqr_rotor* cross = t->flat + 3 * (size_t)chart->face;
+  const aqr_short_rotor* cross = t->flat + 3 * (size_t)chart->face;
   aqr_complex x = t->x;
   double w[3], sum = 0;
   for (unsigned i = 0; i < 3; i++)
@@ -186,7 +185,7 @@ static aqr_complex nearest_branch(const aqr_tracer* t, aqr_complex d)
   }
   aqr_complex u = cx(0, 0);
   for (unsigned i = 0; i < 3; i++)
-    u = cx_madd(u, sum > 0 ? w[i] : 1, cx_wide(cross[i]));
+    u = cx_madd(u, sum > 0 ? w[i] : 1, cx((double)cross[i].x, (double)cross[i].y));
   aqr_complex off = cx_unit(cx_mul(u, cx_conj(cx_fourth(cx_mul(d, cx_conj(turn_of(chart)))))));
   return cx_unit(cx_mul(d, half_angle(half_angle(off))));
 }

@@ -25,7 +25,7 @@ typedef enum aqr_advance
 typedef struct aqr_tracer
 {
   const aqr_surface* surface;
-  const aqr_rotor* flat; /* of aqr_field; NULL for pure geodesics */
+  const aqr_short_rotor* flat; /* of aqr_field; NULL for pure geodesics */
   aqr_chart chart;
   aqr_complex x, d; /* position and unit direction in the chart */
   bool isotropic;   /* the last step followed the trusted direction, not the field */
