@@ -167,6 +167,8 @@ static aqr_status attempt(aqr_remesher* r, const aqr_options* o, double toleranc
   aqr_end_stage(r, AQR_STAGE_NETWORK, began);
   if (status != AQR_OK)
     goto done;
+  if (!o->show_lines) /* only their view would read them from here on */
+    aqr_lines_free(c, &r->lines);
   began = aqr_begin_stage(r, AQR_STAGE_FACES);
   aqr_faces_options faces = { o->convex_partition != 0, o->largest_valence, &tips, r->surface, r->field.normal };
   status = aqr_faces_finish(c, &r->polygons, &faces);

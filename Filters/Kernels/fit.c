@@ -65,7 +65,6 @@ static aqr_status allocate(aqr_context* c, aqr_fitter* f)
   f->residual = AQR_NEW(c, vec3, n);
   f->direction = AQR_NEW(c, vec3, n);
   f->image = AQR_NEW(c, vec3, n);
-  f->before = AQR_NEW(c, vec3, n);
   f->across = AQR_NEW(c, vec3, m->n_half_edges / 2);
   f->share = AQR_NEW(c, double, n);
   f->block = AQR_NEW(c, double, 6 * n);
@@ -74,8 +73,7 @@ static aqr_status allocate(aqr_context* c, aqr_fitter* f)
   f->back = AQR_NEW0(c, uint8_t, n);
   f->folds = AQR_NEW(c, aqr_fit_flag, n);
   return f->triangles && f->first_corner && f->corners && f->links && f->move && f->residual && f->direction &&
-             f->image && f->before && f->across && f->share && f->block && f->inverse && f->product && f->back &&
-             f->folds
+             f->image && f->across && f->share && f->block && f->inverse && f->product && f->back && f->folds
            ? AQR_OK
            : AQR_OUT_OF_MEMORY;
 }
@@ -92,7 +90,6 @@ static void release(aqr_context* c, aqr_fitter* f)
   AQR_DROP(c, f->residual, n);
   AQR_DROP(c, f->direction, n);
   AQR_DROP(c, f->image, n);
-  AQR_DROP(c, f->before, n);
   AQR_DROP(c, f->across, f->m->n_half_edges / 2);
   AQR_DROP(c, f->share, n);
   AQR_DROP(c, f->block, 6 * n);
@@ -215,7 +212,7 @@ static void apply(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     aqr_vertex* x = &f->m->vertices[v];
-    f->before[v] = x->position;
+    f->image[v] = x->position;
     x->position = v3_add(x->position, f->move[v]);
   }
 }
@@ -235,7 +232,7 @@ static void look_for_fold(aqr_fitter* f, aqr_index h)
   aqr_index at[3] = { aqr_pm_from(m, aqr_pm_prev(m, h)), aqr_pm_from(m, h), aqr_pm_to(m, h) };
   vec3 normal = m->vertices[at[1]].normal;
   double now = sine(aqr_pm_point(m, at[0]), aqr_pm_point(m, at[1]), aqr_pm_point(m, at[2]), normal);
-  if (now > least_sine || !(now < sine(f->before[at[0]], f->before[at[1]], f->before[at[2]], normal)))
+  if (now > least_sine || !(now < sine(f->image[at[0]], f->image[at[1]], f->image[at[2]], normal)))
     return;
   for (unsigned i = 0; i < 3; i++)
     atomic_store_explicit(&f->folds[at[i]], 1, memory_order_relaxed);
@@ -283,7 +280,7 @@ static void hold_back(void* data, size_t begin, size_t end)
     atomic_store_explicit(&f->folds[v], 0, memory_order_relaxed);
     atomic_store_explicit(&f->folded, 1, memory_order_relaxed);
     f->move[v] = v3_scale(f->move[v], f->keep);
-    f->m->vertices[v].position = v3_add(f->before[v], f->move[v]);
+    f->m->vertices[v].position = v3_add(f->image[v], f->move[v]);
   }
 }
 

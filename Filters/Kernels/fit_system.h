@@ -55,7 +55,8 @@ typedef struct aqr_fitter
   size_t* first_corner; /* per vertex, into `corners`; n_vertices + 2 */
   aqr_index* corners;   /* 3 * triangle + corner */
   aqr_fit_link* links;  /* per vertex: one more than its corners, as a fan has at most so many neighbours */
-  vec3 *move, *residual, *direction, *image, *before;
+  vec3 *move, *residual, *direction;
+  vec3* image;         /* of the direction; after the solver, where the vertices were before their move */
   vec3* across;        /* per edge: unit, along the surface and across the edge as it was before the first move */
   double* share;       /* per vertex: of the error, by area, so that it is held as firmly where few samples are used */
   double* block;       /* per vertex: its own block of the matrix, as in link */

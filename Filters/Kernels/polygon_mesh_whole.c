@@ -269,6 +269,9 @@ done:
     m->n_vertices = nv;
     m->n_half_edges = nh;
     m->n_faces = nf;
+    if (!AQR_TRIM(c, m->vertices, m->vertex_capacity, nv) || !AQR_TRIM(c, m->half_edges, m->half_edge_capacity, nh) ||
+        !AQR_TRIM(c, m->edge_type, m->edge_capacity, nh / 2) || !AQR_TRIM(c, m->faces, m->face_capacity, nf))
+      status = AQR_OUT_OF_MEMORY;
   }
   else
   {
