@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <sstream>
-#include <utility>
 
 namespace
 {
@@ -22,6 +21,13 @@ std::string Quoted(const std::string& text)
     quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   }
   return quoted + '"';
+}
+
+//------------------------------------------------------------------------------
+// "1 edge", "2 edges"
+std::string Counted(size_t count, const std::string& what)
+{
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 //------------------------------------------------------------------------------
@@ -84,20 +90,24 @@ std::vector<std::string> WarningsOf(
   const aqr_remesher* remesher, vtkPolyData* input, bool lockLines, size_t lockedEdges)
 {
   const aqr_report* report = aqr_remesher_report(remesher);
-  const std::pair<size_t, const char*> repairs[] = {
-    { report->degenerate_triangles, "degenerate triangles dropped" },
-    { report->duplicate_triangles, "duplicate triangles dropped" },
-    { report->split_edges, "non-manifold edges cut apart" },
-    { report->split_points, "non-manifold points cut apart" },
-    { report->flipped_triangles, "triangles turned to agree with their neighbours" },
-    { report->unorientable_edges, "edges cut because no orientation agrees across them" },
+  const struct
+  {
+    size_t Count;
+    const char *What, *Done;
+  } repairs[] = {
+    { report->degenerate_triangles, "degenerate triangle", " dropped" },
+    { report->duplicate_triangles, "duplicate triangle", " dropped" },
+    { report->split_edges, "non-manifold edge", " cut apart" },
+    { report->split_points, "non-manifold point", " cut apart" },
+    { report->flipped_triangles, "triangle", " turned to agree with the neighbours" },
+    { report->unorientable_edges, "edge", " cut because no orientation agrees on both sides" },
   };
   std::string list;
   for (const auto& repair : repairs)
   {
-    if (repair.first)
+    if (repair.Count)
     {
-      list += (list.empty() ? "" : ", ") + std::to_string(repair.first) + " " + repair.second;
+      list += (list.empty() ? "" : ", ") + Counted(repair.Count, repair.What) + repair.Done;
     }
   }
   std::vector<std::string> warnings;
@@ -118,19 +128,20 @@ std::vector<std::string> WarningsOf(
   }
   if (report->given_up_edges)
   {
-    warnings.push_back("So few points cannot follow all creases: " + std::to_string(report->given_up_edges) +
-                       " edges of those that bend the surface least are no feature lines.");
+    warnings.push_back(
+      "So few points cannot follow all creases: those that bend the surface least are no feature lines, " +
+      Counted(report->given_up_edges, "edge") + " of the input.");
   }
   if (report->coarsened_components)
   {
-    warnings.push_back(std::to_string(report->coarsened_components) +
-                       " components were too small to carry lines at this density and were decimated instead.");
+    warnings.push_back("Too small to carry lines at this density, and decimated instead: " +
+                       Counted(report->coarsened_components, "component") + ".");
   }
   if (report->asymmetric_points)
   {
-    warnings.push_back(std::to_string(report->asymmetric_points) +
-                       " points of the input have no other at their mirror image: the output is what lies on "
-                       "the positive side of the plane of symmetry, and its image.");
+    warnings.push_back("The input is not symmetric: nothing is at the mirror image of " +
+                       Counted(report->asymmetric_points, "point") +
+                       ". The output is what lies on the positive side of the plane of symmetry, and its image.");
   }
   if (report->topology_lost)
   {

@@ -33,8 +33,9 @@ typedef struct coarsener
 {
   aqr_context* c;
   aqr_polygon_mesh mesh;
-  quadric* quadrics;
+  quadric* quadrics; /* about the centre: far from it the terms of a small component's would cancel */
   size_t n_quadrics;
+  vec3 centre;
   candidate* candidates;
   size_t n_candidates, candidate_capacity;
   aqr_index* touched; /* per vertex: last pass that changed a face at it */
@@ -172,11 +173,12 @@ static aqr_status set_quadrics(coarsener* k)
       return AQR_CANCELLED;
     if (aqr_pm_face(m, h) == AQR_NONE)
       continue;
-    vec3 cross = face_cross(m, h), p = aqr_pm_point(m, aqr_pm_from(m, h));
+    vec3 cross = face_cross(m, h), p = v3_sub(aqr_pm_point(m, aqr_pm_from(m, h)), k->centre);
     add_plane(&k->quadrics[aqr_pm_from(m, h)], v3_unit(cross), p, v3_norm(cross));
     if (aqr_pm_on_chain(m, h))
     {
-      vec3 e = v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), p), n = v3_unit(v3_cross(e, cross));
+      vec3 e = v3_sub(aqr_pm_point(m, aqr_pm_to(m, h)), aqr_pm_point(m, aqr_pm_from(m, h)));
+      vec3 n = v3_unit(v3_cross(e, cross));
       add_plane(&k->quadrics[aqr_pm_from(m, h)], n, p, border_weight * v3_norm2(e));
       add_plane(&k->quadrics[aqr_pm_to(m, h)], n, p, border_weight * v3_norm2(e));
     }
@@ -230,7 +232,8 @@ static aqr_status list_candidates(coarsener* k)
     double length2 = v3_norm2(v3_sub(aqr_pm_point(m, v), p));
     for (unsigned i = 0; i < 10; i++)
       q.a[i] += k->quadrics[v].a[i];
-    k->candidates[k->n_candidates++] = (candidate){ error_at(&q, p) + length_price * length2 * length2, h };
+    k->candidates[k->n_candidates++] =
+      (candidate){ error_at(&q, v3_sub(p, k->centre)) + length_price * length2 * length2, h };
   }
   return aqr_sort(k->c, k->candidates, k->n_candidates, sizeof *k->candidates, by_cost);
 }
@@ -319,6 +322,7 @@ aqr_status aqr_coarsen_component(aqr_context* c, const aqr_surface* s, const aqr
     status = build(&k, s, field, faces, n_faces, true);
   }
   AQR_TRY(status);
+  k.centre = aqr_pm_point(&k.mesh, 0);
   k.n_quadrics = k.mesh.n_vertices;
   k.quadrics = AQR_NEW0(c, quadric, k.n_quadrics);
   k.touched = AQR_NEW0(c, aqr_index, k.n_quadrics);

@@ -138,7 +138,7 @@ static void lump_points(void* data, size_t begin, size_t end)
     }
     j->length[v] = n ? length / (double)n : 0;
     j->lumps[v] = p;
-    v3_store(j->normal + 3 * (size_t)v, v3_unit_or(v3_norm2(normal) > 0 ? normal : any, v3(0, 0, 1)));
+    v3_store(j->normal + 3 * (size_t)v, v3_norm2(any) > 0 ? v3_unit(v3_norm2(normal) > 0 ? normal : any) : v3(0, 0, 1));
   }
 }
 

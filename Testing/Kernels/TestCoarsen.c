@@ -27,6 +27,19 @@ static aqr_status coarsen_grid(aqr_context* c, size_t nu, size_t nv, bool closed
   return status;
 }
 
+/* Of the middles of edges from the torus. */
+static double farthest_from_torus(const aqr_polygon_mesh* m, vec3 centre, double size)
+{
+  double farthest = 0;
+  for (aqr_index h = 0; h < m->n_half_edges; h += 2)
+  {
+    vec3 q = v3_scale(v3_add(aqr_pm_point(m, aqr_pm_from(m, h)), aqr_pm_point(m, aqr_pm_to(m, h))), 0.5);
+    q = v3_scale(v3_sub(q, centre), 1 / size);
+    farthest = fmax(farthest, fabs(hypot(hypot(q.x, q.y) - 1, q.z) - 0.4));
+  }
+  return farthest;
+}
+
 AQR_TEST(a_coarsened_torus_keeps_its_handle_and_its_shape)
 {
   aqr_context c = { 0 };
@@ -34,13 +47,7 @@ AQR_TEST(a_coarsened_torus_keeps_its_handle_and_its_shape)
   CHECK(coarsen_grid(&c, 40, 20, true, on_torus, 80, &m) == AQR_OK);
   CHECK(aqr_pm_is_consistent(&m) && aqr_pm_is_regular(&m) && aqr_pm_euler(&m) == 0);
   CHECK(m.n_vertices == 80 && m.n_faces == 160);
-  double farthest = 0;
-  for (aqr_index h = 0; h < m.n_half_edges; h += 2)
-  {
-    vec3 q = v3_scale(v3_add(aqr_pm_point(&m, aqr_pm_from(&m, h)), aqr_pm_point(&m, aqr_pm_to(&m, h))), 0.5);
-    farthest = fmax(farthest, fabs(hypot(hypot(q.x, q.y) - 1, q.z) - 0.4));
-  }
-  CHECK_BELOW(farthest, 0.2);
+  CHECK_BELOW(farthest_from_torus(&m, v3(0, 0, 0), 1), 0.2);
   for (size_t f = 0; f < m.n_faces; f++)
   {
     aqr_index h = m.faces[f];
@@ -52,6 +59,26 @@ AQR_TEST(a_coarsened_torus_keeps_its_handle_and_its_shape)
   }
   aqr_polygon_mesh_free(&c, &m);
   CHECK(c.bytes == 0);
+}
+
+static const vec3 speck_centre = { 0.4, 0.2, -0.3 };
+static const double speck_size = 1e-8;
+
+static aqr_vertex on_speck(double s, double t)
+{
+  aqr_vertex v = on_torus(s, t);
+  v.position = v3_madd(speck_centre, speck_size, v.position);
+  return v;
+}
+
+AQR_TEST(a_coarsened_speck_far_from_the_middle_keeps_its_shape)
+{
+  aqr_context c = { 0 };
+  aqr_polygon_mesh m = { 0 };
+  CHECK(coarsen_grid(&c, 40, 20, true, on_speck, 80, &m) == AQR_OK);
+  CHECK(aqr_pm_is_regular(&m) && aqr_pm_euler(&m) == 0 && m.n_vertices == 80);
+  CHECK_BELOW(farthest_from_torus(&m, speck_centre, speck_size), 0.2);
+  aqr_polygon_mesh_free(&c, &m);
 }
 
 AQR_TEST(coarsening_a_sheet_turns_no_triangle)

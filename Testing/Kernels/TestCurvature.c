@@ -199,17 +199,24 @@ static vec3 place_on_inner_cylinder(double u, double v)
   return v3(0.29 * cos(shape_turn * u), -0.29 * sin(shape_turn * u), v);
 }
 
+/* One shape behind the other. */
+static shape together_with(const shape* one, const shape* other)
+{
+  shape both = { one->n_points + other->n_points, one->n_triangles + other->n_triangles, NULL, NULL };
+  both.points = malloc(3 * both.n_points * sizeof(double));
+  both.triangles = malloc(3 * both.n_triangles * sizeof(int64_t));
+  memcpy(both.points, one->points, 3 * one->n_points * sizeof(double));
+  memcpy(both.points + 3 * one->n_points, other->points, 3 * other->n_points * sizeof(double));
+  memcpy(both.triangles, one->triangles, 3 * one->n_triangles * sizeof(int64_t));
+  for (size_t i = 0; i < 3 * other->n_triangles; i++)
+    both.triangles[3 * one->n_triangles + i] = other->triangles[i] + (int64_t)one->n_points;
+  return both;
+}
+
 AQR_TEST(ball_jumps_to_the_next_sheet)
 {
   shape one = shape_cylinder(40, 8), other = shape_grid(80, 40, true, false, 0.3, 9, place_on_inner_cylinder);
-  shape both = { one.n_points + other.n_points, one.n_triangles + other.n_triangles, NULL, NULL };
-  both.points = malloc(3 * both.n_points * sizeof(double));
-  both.triangles = malloc(3 * both.n_triangles * sizeof(int64_t));
-  memcpy(both.points, one.points, 3 * one.n_points * sizeof(double));
-  memcpy(both.points + 3 * one.n_points, other.points, 3 * other.n_points * sizeof(double));
-  memcpy(both.triangles, one.triangles, 3 * one.n_triangles * sizeof(int64_t));
-  for (size_t i = 0; i < 3 * other.n_triangles; i++)
-    both.triangles[3 * one.n_triangles + i] = other.triangles[i] + (int64_t)one.n_points;
+  shape both = together_with(&one, &other);
   estimate alone = estimate_of(&one, 0.04), together = estimate_of(&both, 0.04);
   size_t* at = malloc(one.n_points * sizeof *at); /* of the points of `one` among those of both */
   for (size_t i = 0; i < together.s.n_points; i++)
@@ -228,6 +235,29 @@ AQR_TEST(ball_jumps_to_the_next_sheet)
   finish(&alone, &one);
   finish(&together, &both);
   shape_free(&other);
+}
+
+AQR_TEST(normals_of_tiny_components_point_anywhere)
+{
+  const vec3 at = { 1.5, 0.3, 0.2 };
+  const double size = 1e-8;
+  shape one = shape_ellipsoid(16, 0.2, 5, v3(1, 1, 1)), speck = shape_ellipsoid(8, 0, 6, v3(1, 1, 1));
+  for (size_t i = 0; i < speck.n_points; i++)
+    v3_store(speck.points + 3 * i, v3_madd(at, size, v3_load(speck.points + 3 * i)));
+  shape both = together_with(&one, &speck);
+  estimate e = estimate_of(&both, 0.04);
+  double least = 1;
+  for (size_t i = 0; i < e.s.n_points; i++)
+  {
+    vec3 out = v3_sub(v3_load(both.points + 3 * (size_t)e.s.origin[i]), at);
+    if (v3_norm(out) < 2 * size)
+      least = fmin(least, v3_dot(v3_unit(out), v3_load(e.t.normal + 3 * i)));
+  }
+  CHECK(least < 1); /* some were looked at */
+  CHECK_BELOW(1 - least, 0.1);
+  finish(&e, &both);
+  shape_free(&one);
+  shape_free(&speck);
 }
 
 static vec3 place_on_folded_sheet(double u, double v)
