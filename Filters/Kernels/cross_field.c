@@ -10,7 +10,7 @@
 
 enum
 {
-  sweeps = 40,
+  sweeps = 12,
   border_reach = 4, /* edges to either side that a border's tangent is taken from */
   steps_between_polls = 4096
 };
@@ -220,8 +220,8 @@ static void store(void* data, size_t begin, size_t end)
   for (size_t v = begin; v < end; v++)
   {
     aqr_frame own = principal_frame(j->field, v);
-    double angle = atan2((double)j->from[v].y, (double)j->from[v].x) / 4;
-    v3_narrow(j->field->cross + 3 * v, v3_madd(v3_scale(own.x, cos(angle)), sin(angle), own.y));
+    aqr_complex turn = cx_fourth_root(cx_unit(cx_wide(j->from[v])));
+    v3_narrow(j->field->cross + 3 * v, v3_madd(v3_scale(own.x, turn.x), turn.y, own.y));
   }
 }
 

@@ -64,6 +64,17 @@ static inline aqr_complex cx_fourth(aqr_complex a)
   return cx_mul(b, b);
 }
 
+/* The one nearest to 1 of a unit number's fourth roots, by halving its angle twice. */
+static inline aqr_complex cx_fourth_root(aqr_complex u)
+{
+  for (int i = 0; i < 2; i++)
+  {
+    double x = greater(0, (1 + u.x) / 2), y = greater(0, (1 - u.x) / 2);
+    u = cx(sqrt(x), copysign(sqrt(y), u.y));
+  }
+  return u;
+}
+
 /* A triangle laid into the plane: corner 0 at the origin, half-edge 0 along +x. */
 static inline void aqr_lay_flat(vec3 a, vec3 b, vec3 c, aqr_complex q[3])
 {

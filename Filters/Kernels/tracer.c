@@ -163,13 +163,6 @@ vec3 aqr_tracer_direction(const aqr_tracer* t)
   return direction;
 }
 
-/* Half the angle of a unit number. */
-static aqr_complex half_angle(aqr_complex u)
-{
-  double x = greater(0, (1 + u.x) / 2), y = greater(0, (1 - u.x) / 2);
-  return cx(sqrt(x), copysign(sqrt(y), u.y));
-}
-
 /* The cross's branch nearest to d at x: the linear blend of the corners' values (paper 2). */
 static aqr_complex nearest_branch(const aqr_tracer* t, aqr_complex d)
 {
@@ -187,7 +180,7 @@ static aqr_complex nearest_branch(const aqr_tracer* t, aqr_complex d)
   for (unsigned i = 0; i < 3; i++)
     u = cx_madd(u, sum > 0 ? w[i] : 1, cx((double)cross[i].x, (double)cross[i].y));
   aqr_complex off = cx_unit(cx_mul(u, cx_conj(cx_fourth(cx_mul(d, cx_conj(turn_of(chart)))))));
-  return cx_unit(cx_mul(d, half_angle(half_angle(off))));
+  return cx_unit(cx_mul(d, cx_fourth_root(off)));
 }
 
 bool aqr_tracer_align(aqr_tracer* t)

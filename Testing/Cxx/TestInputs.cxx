@@ -151,7 +151,7 @@ int TestInputs(int, char*[])
   filter->Update();
   std::cout << messages.Text;
   CHECK(messages.Warnings == 1 && messages.Errors == 0);
-  CHECK(messages.Says("1 degenerate") && messages.Says("1 duplicate") && messages.Says("1 triangles turned"));
+  CHECK(messages.Says("1 degenerate") && messages.Says("1 duplicate") && messages.Says("1 triangle turned"));
   CHECK(Alike(filter->GetOutput(), expected));
 
   // A spacing far below what the input can carry is not met, and that is said.
