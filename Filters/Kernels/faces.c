@@ -7,6 +7,7 @@
 #include "partition.h"
 #include "peaks.h"
 #include "regularize.h"
+#include "thin_triangles.h"
 
 enum
 {
@@ -342,6 +343,7 @@ aqr_status aqr_faces_finish(aqr_context* c, aqr_polygon_mesh* m, const aqr_faces
   if (options->tips)
     AQR_TRY(aqr_tips_raise(c, options->tips, m));
   AQR_REQUIRE(merge_nearer(c, m, one_place, 0.9), AQR_CANCELLED);
+  AQR_TRY(aqr_open_thin_triangles(c, m, options->largest_valence));
   AQR_TRY(aqr_regularize(c, m));
   AQR_REQUIRE(aqr_step(c, 0.95), AQR_CANCELLED);
   AQR_TRY(aqr_pm_verify(c, m, true));
