@@ -10,6 +10,8 @@ enum
   steps_between_polls = 4096
 };
 
+static const double farthest_face =
+  1.5; /* times as far from a tip as the nearest face around its bay: it is another's */
 static const double least_height = 0.7; /* of a tip over its face, in mean distances of the corners from the centre */
 
 /* ---- bays ---- */
@@ -268,6 +270,7 @@ typedef struct outlier
 {
   aqr_index point, face; /* the nearest of what has come of the face elected */
   double distance2;      /* from all faces around the bay */
+  double own2;           /* from `face` */
 } outlier;
 
 static void look_at_face(const aqr_polygon_mesh* m, aqr_index f, vec3 p, outlier* x)
@@ -275,7 +278,7 @@ static void look_at_face(const aqr_polygon_mesh* m, aqr_index f, vec3 p, outlier
   double d = aqr_face_distance2(m, f, p);
   if (d < x->distance2)
   {
-    x->distance2 = d;
+    x->distance2 = x->own2 = d;
     x->face = f;
   }
 }
@@ -285,12 +288,12 @@ static void look_at_face(const aqr_polygon_mesh* m, aqr_index f, vec3 p, outlier
 static outlier farthest_point(
   const aqr_tips* t, size_t bay, const aqr_polygon_mesh* m, const votes* v, aqr_index elected, size_t first)
 {
-  outlier best = { AQR_NONE, elected, 0 };
+  outlier best = { AQR_NONE, elected, 0, 0 };
   const size_t begin = t->bays[bay].points, end = t->bays[bay + 1].points, step = (end - begin) / enough_points + 1;
   for (size_t i = begin; i < end; i += step)
   {
     const vec3 p = aqr_point(t->s, t->points[i]);
-    outlier x = { t->points[i], elected, INFINITY };
+    outlier x = { t->points[i], elected, INFINITY, INFINITY };
     look_at_face(m, elected, p, &x);
     for (aqr_index f = (aqr_index)first; f < m->n_faces && x.distance2 > best.distance2; f++)
       look_at_face(m, f, p, &x);
@@ -325,7 +328,7 @@ static aqr_status raise_over(aqr_context* c, const aqr_tips* t, size_t bay, aqr_
   {
     const outlier x = farthest_point(t, bay, m, v, f, first);
     double size, radius = aqr_face_radius(m, x.face, &size);
-    if (!(sqrt(x.distance2) > least_height * radius))
+    if (!(sqrt(x.distance2) > least_height * radius) || x.own2 > farthest_face * farthest_face * x.distance2)
       break;
     const aqr_vertex tip = aqr_vertex_at(t->s, t->normals, x.point, size);
     v->raised[f] = 1;

@@ -112,6 +112,13 @@ AQR_TEST(a_bay_that_another_face_stands_for_is_left_alone)
   CHECK(count_raised(0, 0, 0.65) == 0);
 }
 
+/* It lies on the next quad: the face with the most corners around the bay would reach over to it. */
+AQR_TEST(a_face_is_raised_to_the_tip_on_another)
+{
+  CHECK(count_raised(0.18, 4, 0.65) == 1);
+  CHECK(count_raised(0.18, 0, 0.65) == 0);
+}
+
 /* Rings around a cone end where they are as small as their spacing: the cone was cut off there, by up to a tenth of its
  * height. */
 AQR_TEST(the_point_of_a_cone_is_cut_off)
