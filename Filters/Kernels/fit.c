@@ -21,7 +21,9 @@ static const double farthest_move = 0.5; /* of the shortest edge at a vertex, in
 static const double least_sine = 0.3;    /* of a corner's angle: a move does not make it smaller than that */
 static const double open_height = 0.01;  /* of a corner that was straight, over the line between its neighbours */
 static const double farthest_sample =
-  0.5;                                  /* of the longest side: what is farther away is another part of the surface */
+  0.5; /* of the longest side: what is farther away is another part of the surface */
+static const double farthest_vertex =
+  0.08; /* of the diagonal, from the surface: a handful of vertices would go farther to stand for a sphere */
 static const double least_cosine = 0.3; /* between a polygon and the surface below it */
 
 static void snap(void* data, size_t begin, size_t end)
@@ -319,6 +321,9 @@ static void settle(void* data, size_t begin, size_t end)
     aqr_closest below;
     aqr_closest_near(f->s, x->place.face, x->position, most_steps, true, &below);
     x->place = below.place;
+    if (below.distance2 > farthest_vertex * farthest_vertex)
+      x->position =
+        v3_madd(below.position, farthest_vertex / sqrt(below.distance2), v3_sub(x->position, below.position));
     vec3 n = v3(0, 0, 0);
     for (unsigned i = 0; i < 3 && f->normals; i++)
       n = v3_madd(n, x->place.bary[i], v3_load(f->normals + 3 * (size_t)f->s->corner[3 * x->place.face + i]));
